@@ -328,6 +328,11 @@ def test_the_first_byte_that_is_no_text_is_named_with_its_place(capsys, tmp_path
     assert plan(capsys, str(path), PROBLEM) == (2, "", f"tailor plan: {path}:{place} is not UTF-8\n")
 
 
+def test_closed_standard_input_is_one_line(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "stdin", None)
+    assert plan(capsys) == (2, "", "tailor plan: -: cannot be read: standard input is closed\n")
+
+
 def test_standard_input_is_read_for_one_file_only(capsys):
     code, _, err = plan(capsys, "-", "-")
     assert (code, "standard input is named twice" in err) == (2, True)

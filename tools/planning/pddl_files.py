@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 from codecs import BOM_UTF8
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import BinaryIO
 
 from tailor.executive.planning.pddl.definitions import split_definitions
 from tailor.executive.planning.pddl.errors import error_at, place_of
@@ -30,13 +31,19 @@ def read_texts(files: list[Path]) -> tuple[str, str]:
 
 def _read(path: Path) -> str:
     try:
-        with nullcontext(sys.stdin.buffer) if str(path) == "-" else path.open("rb") as file:
+        with _standard_input() if str(path) == "-" else path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)  # a device or a pipe has no size
         if len(content) > MAX_BYTES:
             raise UsageError(f"{path}: more than the {MAX_BYTES} bytes allowed in a PDDL file")
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     return _decoded(content.removeprefix(BOM_UTF8), str(path))  # some editors begin a file with a byte order mark
+
+
+def _standard_input() -> AbstractContextManager[BinaryIO]:
+    if sys.stdin is None:  # as a service or `<&-` starts a program
+        raise UsageError("-: cannot be read: standard input is closed")
+    return nullcontext(sys.stdin.buffer)
 
 
 def _decoded(content: bytes, source: str) -> str:
