@@ -165,6 +165,20 @@ BOMBS = {
     "types in a long chain": lambda: parse_domain(
         f"(define (domain d) (:types {' '.join(f't{n} - t{n + 1}' for n in range(15_000))}))"
     ),
+    "a long definition in ten thousands of places": lambda: read(
+        f"""(define (domain d) (:predicates (p) (d)) (:derived (d) (or {"(p) " * 99}))
+            (:action a :parameters () :effect (p)))""",
+        f"(define (problem x) (:domain d) (:goal (and {'(d) ' * 60_000})))",
+    ),
+    "a duration of 98 numbers for thousands of bindings": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p ?a ?b)) (:functions (f ?a ?b))
+                (:durative-action a :parameters (?a ?b) :duration (= ?duration (+ {"(/ (f ?a ?b) 7) " * 49})) :effect (at end (p ?a ?b))))""",
+            f"""(define (problem x) (:domain d) (:objects {objects(64)})
+                (:init {" ".join(f"(= (f o{a} o{b}) 1.5)" for a in range(64) for b in range(64))})
+                (:goal (p o0 o1)))""",
+        )
+    ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
 }
 

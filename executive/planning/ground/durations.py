@@ -11,10 +11,19 @@ from itertools import pairwise
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
-from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
+from tailor.executive.planning.pddl.language import (
+    Action,
+    DurationBound,
+    Function,
+    Number,
+    Numeric,
+    Operation,
+    numbers_in,
+)
 
 Range = tuple[int, int | None]  # shortest and longest duration, None without an upper limit
 NS_PER_S = 10**9
+FREE_NUMBERS = 3  # of a duration and a cost, as many as the domains at hand have
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +119,15 @@ def _operate(operator: str, a: Fraction | None, b: Fraction | None) -> Fraction 
             return a * b
         case _:
             return a / b if b else None
+
+
+def numeric_steps(action: Action) -> int:
+    """Steps of grounding that the arithmetic of an action's duration and cost takes for one binding; 0 if it is short.
+
+    A number takes as long as two formulas.
+    """
+    values = [*(bound.value for bound in action.duration or ()), *([action.cost] if action.cost is not None else [])]
+    return 2 * max(sum(map(numbers_in, values)) - FREE_NUMBERS, 0)
 
 
 def duration_range(

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import TimeGrid, duration_range, range_ns
+from tailor.executive.planning.ground.durations import TimeGrid, duration_range, numeric_steps, range_ns
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -101,7 +101,8 @@ def _durations(
         yield {}, (Fraction(0), Fraction(0))
         return
     relevant = {term for bound in action.duration for term in _terms(bound.value)}
-    for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in relevant), {}):
+    parameters = tuple(p for p in action.parameters if p.name in relevant)
+    for fixed in lifter.choices(parameters, {}, 1 + numeric_steps(action)):
         durations = duration_range(action.duration, fixed, world)
         if durations is not None:
             yield fixed, durations

@@ -7,7 +7,7 @@ from typing import Literal as OneOf
 from typing import cast
 
 from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_terms
-from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
+from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation, numbers_in
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, word_of
 
 MAX_NUMBERS = 100  # in a duration or a cost, evaluated for every ground action; the domains at hand have 3 at most
@@ -26,7 +26,7 @@ def read_duration(node: Node, action: Form, scope: Scope) -> tuple[DurationBound
       PddlError: Malformed, or more numbers than `MAX_NUMBERS`.
     """
     bounds = _duration(node, scope)
-    if sum(_size(bound.value) for bound in bounds) > MAX_NUMBERS:
+    if sum(numbers_in(bound.value) for bound in bounds) > MAX_NUMBERS:
         raise action.place.error(f"the action's duration has more than {MAX_NUMBERS} numbers")
     return bounds
 
@@ -41,7 +41,7 @@ def read_cost(increase: Form, scope: Scope) -> Numeric:
     cost = _numeric(increase.items[2], scope)
     if isinstance(cost, Number) and cost.value < 0:
         raise increase.place.error("expected a cost of at least 0")
-    if _size(cost) > MAX_NUMBERS:
+    if numbers_in(cost) > MAX_NUMBERS:
         raise increase.place.error(f"the action's cost has more than {MAX_NUMBERS} numbers")
     return cost
 
@@ -82,11 +82,6 @@ def _operation(form: Form, scope: Scope) -> Numeric:
     if len(numbers) < 2:
         raise form.place.error(f"'{operator}' expects two numbers")
     return Operation(operator, tuple(numbers))
-
-
-def _size(number: Numeric) -> int:
-    """Number of operands in an arithmetic expression."""
-    return sum(map(_size, number.operands)) if isinstance(number, Operation) else 1
 
 
 def number_of(node: Node) -> float:
