@@ -173,7 +173,8 @@ BOMBS = {
     "a duration of 98 numbers for thousands of bindings": lambda: solve(
         *read(
             f"""(define (domain d) (:predicates (p ?a ?b)) (:functions (f ?a ?b))
-                (:durative-action a :parameters (?a ?b) :duration (= ?duration (+ {"(/ (f ?a ?b) 7) " * 49})) :effect (at end (p ?a ?b))))""",
+                (:durative-action a :parameters (?a ?b)
+                :duration (= ?duration (+ {"(/ (f ?a ?b) 7) " * 49})) :effect (at end (p ?a ?b))))""",
             f"""(define (problem x) (:domain d) (:objects {objects(64)})
                 (:init {" ".join(f"(= (f o{a} o{b}) 1.5)" for a in range(64) for b in range(64))})
                 (:goal (p o0 o1)))""",
