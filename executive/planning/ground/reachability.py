@@ -58,8 +58,10 @@ class Reachability:
             self._triggers.setdefault(atom.predicate, []).append((rule, self._plan(rule, atom)))
 
     def _plan(self, rule: Rule, trigger: Atom | None) -> JoinPlan:
+        self._limit.subject, tested = f"'{rule.action}'", self._index.tested
         plan = join_plan(rule, trigger, self._index, self._world)
-        self._limit.spend(STEPS_PER_PLAN + STEPS_PER_JOIN * len(plan.steps))
+        tested = self._index.tested - tested
+        self._limit.spend(STEPS_PER_PLAN + STEPS_PER_JOIN * len(plan.steps) + tested // JOINS_PER_STEP)
         return plan
 
     def run(self) -> Iterator[Reached | None]:

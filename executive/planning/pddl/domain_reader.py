@@ -19,7 +19,7 @@ from tailor.executive.planning.pddl.s_expressions import (
     read_form,
     word_of,
 )
-from tailor.executive.planning.pddl.typed_lists import ancestors_of, read_typed, read_types, variables_of
+from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, ancestors_of, read_typed, read_types, variables_of
 
 SUPPORTED = frozenset(
     {
@@ -88,7 +88,10 @@ def _declare(form: Form, domain: Domain) -> Domain:
             types = read_types(form)
             return replace(domain, types=types, ancestors=ancestors_of(types))
         case ":constants":
-            return replace(domain, constants=read_typed(rest, domain.types))
+            constants = read_typed(rest, domain.types)
+            if len(constants) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} constants")
+            return replace(domain, constants=constants)
         case ":predicates":
             _reject_connectives(rest)
             return replace(domain, predicates=_signatures(rest, domain))

@@ -21,9 +21,8 @@ from tailor.executive.planning.pddl.s_expressions import (
     read_form,
     word_of,
 )
-from tailor.executive.planning.pddl.typed_lists import read_typed
+from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, read_typed
 
-MAX_OBJECTS = 10_000
 MAX_TIMED = 200  # each is a node of every temporal network
 NANOSECOND_S = 1e-9  # times are whole nanoseconds; a literal at time 0 is one of the initial state
 _METRICS: dict[str, OneOf["makespan", "cost"]] = {
@@ -83,8 +82,8 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
             check_requirements(rest)
         case ":objects":
             draft.objects = read_typed(rest, domain.types)
-            if len(draft.objects) > MAX_OBJECTS:
-                raise form.place.error(f"more than {MAX_OBJECTS} objects")
+            if len(draft.objects) + len(domain.constants) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} objects and constants")
             _reject_constants(form, draft.objects, domain)
         case ":init":
             scope = Scope.of(domain, draft.objects)

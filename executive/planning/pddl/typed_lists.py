@@ -8,6 +8,7 @@ from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, name_of, word_of
 
 ABOVE_ALL = "the type 'object' is above all others and has none above itself"
+MAX_OBJECTS = 10_000  # with the constants
 MAX_TYPES = 500  # the largest competition domain has 30
 
 
