@@ -127,6 +127,10 @@ def of_kind(number):
     return one_action(f"a{number}", "(p ?y)", parameters=f"?x ?y) :precondition (s{number} ?x")
 
 
+def of_type(number):
+    return one_action(f"a{number}", "(p ?x)", parameters=f"?x - t{number}")
+
+
 BOMBS = {
     "thousands of actions": lambda: solve(
         *read(domain_of("d", *(one_action(f"a{n}") for n in range(4400))), ANY.format("d", objects(3)))
@@ -204,6 +208,13 @@ BOMBS = {
                 {" ".join(of_kind(n) for n in range(1000))})""",
             f"""(define (problem x) (:domain d) (:objects {objects(9000)})
                 (:init {" ".join(f"(s{n} o1)" for n in range(1000))}) (:goal (p o0)))""",
+        )
+    ),
+    "thousands of objects of hundreds of types": lambda: solve(
+        *read(
+            f"""(define (domain d) (:types {" ".join(f"t{n} - t{n + 1}" for n in range(450))})
+                (:predicates (p ?x)) {" ".join(of_type(n) for n in range(450))})""",
+            f"(define (problem x) (:domain d) (:objects {objects(9000)} - t0) (:goal (p o1)))",
         )
     ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),

@@ -20,14 +20,14 @@ Test = Callable[[Sequence[str]], bool]
 class FactIndex:
     """Facts by predicate and by the arguments at some positions; only the tables that a plan uses are kept.
 
-    `tested` counts the objects that static facts about them alone have narrowed down.
+    `entered` counts the objects in the sets of types, and of those that static facts about one object narrow down.
     """
 
     def __init__(self, world: StaticWorld) -> None:
         self._tables: dict[str, dict[tuple[int, ...], Table]] = {name: {} for name in world.domain.predicates}
         self._objects: dict[tuple[str, ...], tuple[Table, frozenset[str]]] = {}
         self._narrowed: dict[tuple[tuple[str, ...], frozenset[str]], frozenset[str]] = {}
-        self.tested = 0
+        self.entered = 0
         self._world = world
 
     def table(self, predicate: str, positions: tuple[int, ...]) -> Table:
@@ -40,6 +40,7 @@ class FactIndex:
         if objects is None:
             names = self._world.choices(variable)
             objects = self._objects[variable.types] = ({(): [("", name) for name in names]}, frozenset(names))
+            self.entered += len(names)
         return objects
 
     def narrowed(self, variable: Typed, predicates: frozenset[str]) -> frozenset[str]:
@@ -51,7 +52,7 @@ class FactIndex:
         if key not in self._narrowed:
             facts = self._world.facts
             self._narrowed[key] = frozenset(n for n in names if all((each, n) in facts for each in predicates))
-            self.tested += len(names)
+            self.entered += len(names)
         return self._narrowed[key]
 
     def insert(self, fact: Fact) -> None:
