@@ -23,6 +23,7 @@ from tailor.executive.planning.pddl.language import (
 
 Range = tuple[int, int | None]  # shortest and longest duration, None without an upper limit
 NS_PER_S = 10**9
+MAX_NUMBER = 10**9  # seconds, and the cost of an action: as numbers in PDDL text; plans stay below UNBOUNDED
 FREE_NUMBERS = 3  # of a duration and a cost, as many as the domains at hand have
 
 
@@ -148,9 +149,12 @@ def duration_range(
 
 
 def range_ns(bounds: tuple[Fraction, Fraction | float]) -> Range:
-    """The durations in whole nanoseconds within the bounds; where there is none, the nearest."""
+    """The durations in whole nanoseconds within the bounds; where there is none, the nearest.
+
+    Without an upper limit if that is above MAX_NUMBER seconds.
+    """
     shortest = math.ceil(bounds[0] * NS_PER_S)
-    if not isinstance(bounds[1], Fraction):
+    if not isinstance(bounds[1], Fraction) or bounds[1] > MAX_NUMBER:
         return shortest, None
     longest = math.floor(bounds[1] * NS_PER_S)
     if shortest > longest:
