@@ -94,10 +94,10 @@ class RelaxedPlans:
             for literal in actions[index].made:
                 if cost < costs[literal]:
                     costs[literal], supporters[literal] = cost, index
-                    if cost not in buckets:
-                        buckets[cost] = []
+                    if (bucket := buckets.get(cost)) is None:
+                        bucket = buckets[cost] = []
                         heapq.heappush(queue, cost)
-                    buckets[cost].append(literal)
+                    bucket.append(literal)
 
         for index in self._free:
             fire(index)
