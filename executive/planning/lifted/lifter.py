@@ -43,7 +43,7 @@ class Lifter:
             case Not(part):
                 return self.lift(part, names, not positive)
             case And(parts) | Or(parts):
-                lifted = (self.lift(part, names, positive) for part in parts)
+                lifted = dict.fromkeys(self.lift(part, names, positive) for part in parts)  # each once
                 return conjunction(lifted) if isinstance(formula, And) == positive else disjunction(lifted)
             case Quantified(every, variables, part):
                 if every == positive:

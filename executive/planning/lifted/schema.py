@@ -70,6 +70,7 @@ def _schemata(
     for condition in action.conditions:
         parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lift(condition.formula, names))
         spanned += [(part, span_of(condition.when, durative)) for part in parts]
+    spanned = list(dict.fromkeys(spanned))  # each once, or each would be an open condition
     if any(part == FALSE for part, _ in spanned):
         return
     conditions = tuple((part, span) for part, span in spanned if not isinstance(part, Equality))
