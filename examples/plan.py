@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import Search, format_links, format_plan, parse_domain, parse_problem
+from tailor.planning import CheckBudget, Search, format_links, format_plan, parse_domain, parse_problem
 
 PDDL = Path(__file__).parents[1] / "tests" / "data" / "pddl" / "own"
 

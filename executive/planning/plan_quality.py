@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Literal as OneOf
 
@@ -38,7 +39,7 @@ def total_cost(plan: Plan, problem: Problem) -> float:
       problem: Its domain and the values of its functions.
 
     Returns:
-      The exact sum as the nearest float, without an initial value of (total-cost).
+      The exact sum as the nearest float (infinite beyond all), without an initial value of (total-cost).
     """
     schemata = {action.name: action for action in problem.domain.actions}
     total = Fraction(0)
@@ -47,4 +48,7 @@ def total_cost(plan: Plan, problem: Problem) -> float:
         if action.cost is not None:
             binding = {p.name: name for p, name in zip(action.parameters, step.action[1:], strict=True)}
             total += evaluated(action.cost, binding, problem.values)
-    return float(total)
+    try:
+        return float(total)
+    except OverflowError:
+        return math.inf

@@ -9,13 +9,19 @@ from typing import Protocol
 from tailor.executive.planning.plans.plan import Result
 
 SHORT_STEPS = 20  # partial-order search seldom solves problems with longer relaxed plans
+SHORT_GOAL = 500  # conditions; the problems at hand have 20 at most
 HEAD_START = 2000  # plans refined first where relaxed plans are short: what is found by then keeps its plan and counts
 SHARE = 4  # plans refined per evaluated state, which takes ten times as long as a plan
 
 
-def head_start(expected_steps: int) -> int:
-    """The plans that partial-order search refines before the forward engine starts."""
-    return HEAD_START if expected_steps <= SHORT_STEPS else SHARE
+def head_start(expected_steps: int, conditions: int) -> int:
+    """The plans that partial-order search refines before the forward engine starts.
+
+    Args:
+      expected_steps: Steps of a relaxed plan.
+      conditions: Literals of the goal: each takes a refinement, whose time grows with their number.
+    """
+    return HEAD_START if expected_steps <= SHORT_STEPS and conditions <= SHORT_GOAL else SHARE
 
 
 class Engine(Protocol):

@@ -108,7 +108,9 @@ class _Course:
         if settings.engine == "forward":
             return forward
         partial = yield from self._partial_order(task, grounded, rng)
-        return Portfolio(partial, forward, head_start(forward.expected_steps)) if forward.applies else partial
+        if not forward.applies:
+            return partial
+        return Portfolio(partial, forward, head_start(forward.expected_steps, len(task.goal)))
 
     def _partial_order(
         self, task: GroundTask, grounded: GroundActions, rng: RandomSource

@@ -1,7 +1,7 @@
 """External planners by name: those that come as Python packages run in a process of this Python.
 
-`kairos` is kairos-planner's first plan, `kairos:5` its best one after five seconds; `up:NAME` is the engine NAME of
-unified-planning.
+`kairos` is kairos-planner's first plan, `kairos:5` its best one after five seconds, `kairos:5:0.1` that with dependent
+events 0.1 s apart; `up:NAME` is the engine NAME of unified-planning.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from tailor.schemas.errors import UsageError
 
 KAIROS, UNIFIED = "kairos", "up"
+MIN_LIMIT_S = 0.001
 
 
 def kairos_installed() -> bool:
@@ -24,7 +25,7 @@ def named_planner(command: str) -> list[str] | None:
     """Program and arguments of a planner by name.
 
     Args:
-      command: A command that may be "kairos", "kairos:SECONDS" or "up:ENGINE".
+      command: A command that may be "kairos", "kairos:SECONDS", "kairos:SECONDS:TICK" or "up:ENGINE".
 
     Returns:
       The words of its command; None if it is no such name.
@@ -36,7 +37,12 @@ def named_planner(command: str) -> list[str] | None:
     if name == KAIROS and " " not in command.strip():
         if not kairos_installed():
             raise _missing(command, "kairos-planner", KAIROS)
-        return _module("kairos_planner", str(_seconds(command, detail) if colon else 0.0))
+        seconds, separated, tick = detail.partition(":")
+        return _module(
+            "kairos_planner",
+            str(_seconds(command, seconds) if colon and (seconds or not separated) else 0.0),
+            str(_seconds(command, tick) if separated else 0.0),
+        )
     if name == UNIFIED and colon:
         if not detail or " " in detail:
             raise UsageError(f"planner '{command}': expected up:ENGINE, e.g. up:pyperplan")
@@ -46,8 +52,13 @@ def named_planner(command: str) -> list[str] | None:
     return None
 
 
-def _module(name: str, argument: str) -> list[str]:
-    return [sys.executable, "-P", "-m", f"tailor.runtime.planners.{name}", argument]
+def kairos_command(limit_s: float, tick_s: float) -> str:
+    """The command of kairos-planner with a time limit (infinite: its first plan) and a tick, both in seconds."""
+    return f"{KAIROS}:{'' if math.isinf(limit_s) else max(limit_s, MIN_LIMIT_S)}:{tick_s}"
+
+
+def _module(name: str, *arguments: str) -> list[str]:
+    return [sys.executable, "-P", "-m", f"tailor.runtime.planners.{name}", *arguments]
 
 
 def _seconds(command: str, text: str) -> float:

@@ -225,6 +225,15 @@ def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
         ([DOMAIN, PROBLEM, "-S", "-1"], "expected a seed of at least 0"),
         ([DOMAIN, PROBLEM, "-t", "1e-9"], "expected a tolerance in [1e-6, 1000] s"),
         ([DOMAIN, "/dev/zero"], "/dev/zero: more than the 1000000 bytes"),
+        ([DOMAIN, PROBLEM, "-t", "soon"], "--tolerance: expected a tick in seconds, found 'soon'"),
+        ([DOMAIN, PROBLEM, "--planner", " "], "--planner: expected a command, found ''"),
+        (
+            [DOMAIN, PROBLEM, "--planner", "cat", "--anytime"],
+            "planner does not use --anytime: leave it out",
+        ),
+        ([DOMAIN, PROBLEM, "--planner", "cat", "-l", "9", "-t", "1"], "planner does not use -l, -t: leave them out"),
+        ([DOMAIN, PROBLEM, "--engine", "kairos", "--lifted"], "--engine kairos does not use --lifted: leave it out"),
+        ([DOMAIN, PROBLEM, "--engine", "forward", "-h", "ADD"], "--engine forward does not use -h: leave it out"),
         ([DOMAIN, PROBLEM, "--planner", "no-such-planner"], "planner command 'no-such-planner': cannot be started"),
     ],
 )
@@ -265,6 +274,14 @@ def test_an_external_planners_unsound_plan_is_rejected(capsys, tmp_path):
     assert "unsound" in err
 
 
+@pytest.mark.parametrize("output", ["", ";idle"])
+def test_an_external_planner_may_find_that_nothing_is_to_be_done(capsys, tmp_path, output):
+    idle = tmp_path / "idle.pddl"
+    idle.write_text("(define (problem idle) (:domain kitchen) (:init (hand-empty)) (:goal (hand-empty)))")
+    assert plan(capsys, DOMAIN, str(idle), "--planner", f"sh -c 'echo \"{output}\"'")[:2] == (0, ";idle\n")
+    assert plan(capsys, DOMAIN, PROBLEM, "--planner", "true")[0] == 1
+
+
 def test_help_teaches():
     printed = subprocess.run(
         [sys.executable, "-c", "from tailor.tools.main import main; main()", "plan", "--help"],
@@ -295,6 +312,30 @@ def test_one_file_or_standard_input_may_hold_both(capsys, tmp_path, monkeypatch,
     for files in ([], ["-"]):
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(both.read_bytes())))
         assert plan(capsys, *files) == (0, expected, "")
+
+
+@pytest.mark.parametrize(
+    ("content", "place"),
+    [
+        (b"(define\r (domain \xff", "2:10: the byte 0xff"),
+        (b"\xef\xbb\xbf;\xc3\xb6 \xe9", "1:4: the byte 0xe9"),
+        (b"\x89PNG", "1:1: the byte 0x89"),
+    ],
+)
+def test_the_first_byte_that_is_no_text_is_named_with_its_place(capsys, tmp_path, content, place):
+    path = tmp_path / "binary.pddl"
+    path.write_bytes(content)
+    assert plan(capsys, str(path), PROBLEM) == (2, "", f"tailor plan: {path}:{place} is not UTF-8\n")
+
+
+def test_closed_standard_input_is_one_line(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "stdin", None)
+    assert plan(capsys) == (2, "", "tailor plan: -: cannot be read: standard input is closed\n")
+
+
+def test_standard_input_is_read_for_one_file_only(capsys):
+    code, _, err = plan(capsys, "-", "-")
+    assert (code, "standard input is named twice" in err) == (2, True)
 
 
 def test_errors_of_a_text_with_both_name_its_lines(capsys, tmp_path):

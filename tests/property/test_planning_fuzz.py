@@ -123,6 +123,14 @@ def domain_of(name, *actions):
     return f"(define (domain {name}) (:predicates (p ?a ?b)) {' '.join(actions)})"
 
 
+def of_kind(number):
+    return one_action(f"a{number}", "(p ?y)", parameters=f"?x ?y) :precondition (s{number} ?x")
+
+
+def of_type(number):
+    return one_action(f"a{number}", "(p ?x)", parameters=f"?x - t{number}")
+
+
 BOMBS = {
     "thousands of actions": lambda: solve(
         *read(domain_of("d", *(one_action(f"a{n}") for n in range(4400))), ANY.format("d", objects(3)))
@@ -164,6 +172,50 @@ BOMBS = {
     "10 MB": lambda: parse_domain("(define (domain d) " + "(:predicates (p)) " * 600_000),
     "types in a long chain": lambda: parse_domain(
         f"(define (domain d) (:types {' '.join(f't{n} - t{n + 1}' for n in range(15_000))}))"
+    ),
+    "a long definition in ten thousands of places": lambda: read(
+        f"""(define (domain d) (:predicates (p) (d)) (:derived (d) (or {"(p) " * 99}))
+            (:action a :parameters () :effect (p)))""",
+        f"(define (problem x) (:domain d) (:goal (and {'(d) ' * 60_000})))",
+    ),
+    "a duration of 98 numbers for thousands of bindings": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p ?a ?b)) (:functions (f ?a ?b))
+                (:durative-action a :parameters (?a ?b)
+                :duration (= ?duration (+ {"(/ (f ?a ?b) 7) " * 49})) :effect (at end (p ?a ?b))))""",
+            f"""(define (problem x) (:domain d) (:objects {objects(64)})
+                (:init {" ".join(f"(= (f o{a} o{b}) 1.5)" for a in range(64) for b in range(64))})
+                (:goal (p o0 o1)))""",
+        )
+    ),
+    "thousands of actions for thousands of objects": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p ?x))
+                {" ".join(f"(:action a{n} :parameters (?x) :effect (p ?x))" for n in range(3000))})""",
+            f"(define (problem x) (:domain d) (:objects {objects(9000)}) (:goal (p o0)))",
+        )
+    ),
+    "thousands of quantified effects over thousands of objects": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p ?x)) (:action a :parameters (?x) :effect (and
+                {"(forall (?y) (p ?y))" * 4000})))""",
+            f"(define (problem x) (:domain d) (:objects {objects(9000)}) (:goal (p o0)))",
+        )
+    ),
+    "thousands of objects of thousands of kinds": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p ?x) {" ".join(f"(s{n} ?x)" for n in range(1000))})
+                {" ".join(of_kind(n) for n in range(1000))})""",
+            f"""(define (problem x) (:domain d) (:objects {objects(9000)})
+                (:init {" ".join(f"(s{n} o1)" for n in range(1000))}) (:goal (p o0)))""",
+        )
+    ),
+    "thousands of objects of hundreds of types": lambda: solve(
+        *read(
+            f"""(define (domain d) (:types {" ".join(f"t{n} - t{n + 1}" for n in range(450))})
+                (:predicates (p ?x)) {" ".join(of_type(n) for n in range(450))})""",
+            f"(define (problem x) (:domain d) (:objects {objects(9000)} - t0) (:goal (p o1)))",
+        )
     ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
 }

@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tailor.executive.planning import Domain, Problem, Result, Search, Settings
-from tailor.executive.planning.pddl.errors import shortened
-from tailor.schemas.errors import UsageError
+from tailor.runtime.planners.named import kairos_command
+from tailor.tools.cli.plan_answers import linked_answer
 from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START, Limits
 
 if TYPE_CHECKING:
-    from tailor.executive.planning import AnytimeSearch
-    from tailor.runtime.processes.planner_process import PlannerProcess
+    from tailor.executive.planning import AnytimeSearch, Plan
 
 GRACE_S = 5.0  # of kairos-planner, beyond its own time limit
 _POLL_S = 0.002  # period of polling an external planner
@@ -52,7 +51,7 @@ def with_kairos(
     search = Search(domain, problem, settings)
     result = search.advance(_HeadStart(limits, search, DURATIVE_HEAD_START))
     if result is None or result.status in ("limit", "unsupported"):
-        found = external("kairos", texts, domain, problem, limits.left_s)
+        found = external(kairos_command(math.inf, settings.tolerance_s), texts, domain, problem, limits.left_s)
         if found.plan is not None:
             generated, visited = search.counts
             return replace(found, generated=generated, visited=visited), "kairos"
@@ -62,24 +61,33 @@ def with_kairos(
 
 def anytime(search: AnytimeSearch, limits: Limits) -> Result:
     """The best plan within the limits; prints each better one on standard error. An interrupt ends the search."""
+    result = _improved(search, limits)
+    if result.plan is not None:
+        _report_end(search, limits)
+    return result
+
+
+def _improved(search: AnytimeSearch, limits: Limits) -> Result:
+    """As `anytime`, without the line at the end."""
     started = time.process_time()
     try:
         while not search.ended and not limits.reason:
             result = search.advance(limits)
             if result is not None and result.plan is not None:
-                print(
-                    f"{search.measure} {search.value:g}, {len(result.plan.steps)} steps, {search.counts[0]} plans "
-                    f"generated, {time.process_time() - started:.2f} s CPU",
-                    file=sys.stderr,
-                )
+                spent = f"{search.counts[0]} plans generated, {time.process_time() - started:.2f} s CPU"
+                _report(search.measure, search.value, result.plan, spent)
     except KeyboardInterrupt:
         limits.interrupted = True
-    if search.best is None:
-        return Result("limit", None, limits.reason, *search.counts)
-    if search.best.plan is not None:
-        why = "no plan is better" if search.ended == "proven" else search.ended or limits.why_none_better
-        print(f"best plan found: {why}", file=sys.stderr)
-    return search.best
+    return search.best or Result("limit", None, limits.reason, *search.counts)
+
+
+def _report(measure: str, value: float, plan: Plan, by: str) -> None:
+    print(f"{measure} {value:g}, {len(plan.steps)} steps, {by}", file=sys.stderr)
+
+
+def _report_end(search: AnytimeSearch, limits: Limits) -> None:
+    why = "no plan is better" if search.ended == "proven" else search.ended or limits.why_none_better
+    print(f"best plan found: {why}", file=sys.stderr)
 
 
 def anytime_beside_kairos(
@@ -96,21 +104,25 @@ def anytime_beside_kairos(
     from tailor.runtime.processes.planner_process import PlannerProcess
 
     search = AnytimeSearch(domain, problem, settings)
-    limited = math.isfinite(limits.limit_s)
-    child = PlannerProcess(f"kairos:{limits.limit_s:g}" if limited else "kairos", *texts, limits.limit_s + GRACE_S)
+    command = kairos_command(limits.limit_s, settings.tolerance_s)
+    child = PlannerProcess(command, *texts, limits.limit_s + GRACE_S)
     try:
-        ours = anytime(search, limits)
-        if search.ended == "proven" or ours.status == "unsolvable":
-            return ours, ""
-        while child.poll() is None and not limits.interrupted:
+        ours = _improved(search, limits)
+        decided = search.ended == "proven" or ours.status == "unsolvable"
+        while not decided and child.poll() is None and not limits.interrupted:
             time.sleep(_POLL_S)
     finally:
         child.kill()
-    theirs = _linked(child, domain, problem)
-    if theirs.plan is None or quality(theirs.plan, problem) >= search.value:
-        return ours, ""
-    generated, visited = search.counts
-    return replace(theirs, generated=generated, visited=visited), "kairos"
+    theirs = None if decided else linked_answer(child, domain, problem).plan
+    value = math.inf if theirs is None else quality(theirs, problem)
+    if theirs is not None and value < search.value:
+        _report(search.measure, value, theirs, "by kairos-planner")
+        ours, planner = Result("solved", theirs, "", *search.counts), "kairos"
+    else:
+        planner = ""
+    if ours.plan is not None:
+        _report_end(search, limits)
+    return ours, planner
 
 
 def external(command: str, texts: tuple[str, str], domain: Domain, problem: Problem, limit_s: float) -> Result:
@@ -123,28 +135,7 @@ def external(command: str, texts: tuple[str, str], domain: Domain, problem: Prob
             time.sleep(_POLL_S)
     finally:
         child.kill()
-    return _linked(child, domain, problem)
-
-
-def _linked(child: PlannerProcess, domain: Domain, problem: Problem) -> Result:
-    """The plan of an external planner that has ended."""
-    from tailor.executive.planning import completed, parse_plan
-
-    answer = child.poll()
-    assert answer is not None
-    try:
-        plan = completed(parse_plan(answer.output), domain, problem)
-    except UsageError as error:
-        return Result("limit", None, f"{answer.reason}{_verdict(answer.output) or f'; {error}'}", 0, 0)
-    if isinstance(plan, str):
-        return Result("limit", None, f"the planner's plan is unsound: {plan}", 0, 0)
-    return Result("solved", plan, "", 0, 0)
-
-
-def _verdict(output: str) -> str:
-    """What a planner states instead of a plan, such as VHPOP's "no plan"; empty if it printed steps, or nothing."""
-    lines = [line for line in map(str.strip, output.splitlines()) if line and not line.startswith(";")]
-    return f": '{shortened(lines[-1])}'" if lines and "(" not in output else ""
+    return linked_answer(child, domain, problem)
 
 
 def _searched(search: Search, limits: Limits) -> Result:

@@ -112,7 +112,7 @@ def _configure_planners(group: argparse._ArgumentGroup) -> None:
         "--planner",
         metavar="COMMAND",
         help="plan with an external program in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc', "
-        "or with kairos, kairos:SECONDS, up:ENGINE (of unified-planning)",
+        "or with kairos, kairos:SECONDS, kairos:SECONDS:TICK, up:ENGINE (of unified-planning)",
     )
     group.add_argument(
         "--compare",
@@ -194,7 +194,12 @@ def _minutes(text: str) -> float:
 
 def _tolerance(text: str) -> float:
     """A tick in seconds; VHPOP 2's time limit "unlimited" is the default, 0.01."""
-    return 0.01 if text == "unlimited" else float(text)
+    if text == "unlimited":
+        return 0.01
+    try:
+        return float(text)
+    except ValueError:
+        raise UsageError(f"--tolerance: expected a tick in seconds, found '{text}'") from None
 
 
 def _megabytes(text: str) -> float:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from tailor.executive.planning.forward.strips_task import StripsTask, bits_of
 
 UNREACHED = 1 << 60  # cost of a literal
+MOST = 1 << 50  # cost of a reached one: a chain of n actions with two conditions each costs 2 ** n
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,25 +82,28 @@ class RelaxedPlans:
         actions, users = self._strips.actions, self._users
         costs, supporters = [UNREACHED] * self._strips.literals, [-1] * self._strips.literals
         missing, sums = self._counts.copy(), [1] * len(actions)
-        buckets: list[list[int]] = [bits_of(state)]
+        buckets: dict[int, list[int]] = {0: bits_of(state)}
+        queue = [0]  # the costs of buckets: there are far fewer than costs
         for literal in buckets[0]:
             costs[literal] = 0
         unmet = self._strips.goal_mask & ~state
         applicable: tuple[int, ...] = ()
 
         def fire(index: int) -> None:
-            cost = sums[index]
-            while len(buckets) <= cost:
-                buckets.append([])
+            cost = min(sums[index], MOST)
             for literal in actions[index].made:
                 if cost < costs[literal]:
                     costs[literal], supporters[literal] = cost, index
-                    buckets[cost].append(literal)
+                    if (bucket := buckets.get(cost)) is None:
+                        bucket = buckets[cost] = []
+                        heapq.heappush(queue, cost)
+                    bucket.append(literal)
 
         for index in self._free:
             fire(index)
-        for cost, bucket in enumerate(buckets):  # grows meanwhile
-            for literal in bucket:
+        while queue:
+            cost = heapq.heappop(queue)
+            for literal in buckets[cost]:  # the last bucket grows meanwhile
                 if costs[literal] != cost:
                     continue  # closed before at a lower cost
                 unmet &= ~(1 << literal)

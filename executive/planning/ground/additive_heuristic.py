@@ -28,6 +28,7 @@ class Value(NamedTuple):
 
 
 UNREACHABLE = Value(math.inf, math.inf, math.inf)
+MOST = 1e200  # cost and work of a reached literal: a chain of n actions with two conditions each costs 2 ** n
 INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action, but one unit of work
 NOTHING = Value(0, 0, 0)
 PORTION = 4096  # actions relaxed or entered per unit of budget: ten milliseconds; small tasks take one unit in all
@@ -124,7 +125,7 @@ def _relax(action: GroundAction, cost: float, values: Sequence[Value], changed: 
         if effect.conditions:
             start = sum_of([before, *(_value(condition, values) for condition, _ in effect.conditions)])
         duration = (action.shortest if effect.moment else 0) if action.duration_s else 1
-        value = (start.cost + cost, start.work + 1, start.makespan + duration)
+        value = (min(start.cost + cost, MOST), min(start.work + 1, MOST), start.makespan + duration)
         old = changed.get(effect.literal) or values[effect.literal]
         if value < old and value[0] < math.inf:
             # the makespan never rises, whichever achiever is the cheapest

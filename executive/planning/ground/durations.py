@@ -11,10 +11,20 @@ from itertools import pairwise
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
-from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation
+from tailor.executive.planning.pddl.language import (
+    Action,
+    DurationBound,
+    Function,
+    Number,
+    Numeric,
+    Operation,
+    numbers_in,
+)
 
 Range = tuple[int, int | None]  # shortest and longest duration, None without an upper limit
 NS_PER_S = 10**9
+MAX_NUMBER = 10**9  # seconds, and the cost of an action: as numbers in PDDL text; plans stay below UNBOUNDED
+FREE_NUMBERS = 3  # of a duration and a cost, as many as the domains at hand have
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +122,15 @@ def _operate(operator: str, a: Fraction | None, b: Fraction | None) -> Fraction 
             return a / b if b else None
 
 
+def numeric_steps(action: Action) -> int:
+    """Steps of grounding that the arithmetic of an action's duration and cost takes for one binding; 0 if it is short.
+
+    A number takes as long as two formulas.
+    """
+    values = [*(bound.value for bound in action.duration or ()), *([action.cost] if action.cost is not None else [])]
+    return 2 * max(sum(map(numbers_in, values)) - FREE_NUMBERS, 0)
+
+
 def duration_range(
     bounds: tuple[DurationBound, ...], binding: Binding, world: StaticWorld
 ) -> tuple[Fraction, Fraction | float] | None:
@@ -130,9 +149,12 @@ def duration_range(
 
 
 def range_ns(bounds: tuple[Fraction, Fraction | float]) -> Range:
-    """The durations in whole nanoseconds within the bounds; where there is none, the nearest."""
+    """The durations in whole nanoseconds within the bounds; where there is none, the nearest.
+
+    Without an upper limit if that is above MAX_NUMBER seconds.
+    """
     shortest = math.ceil(bounds[0] * NS_PER_S)
-    if not isinstance(bounds[1], Fraction):
+    if not isinstance(bounds[1], Fraction) or bounds[1] > MAX_NUMBER:
         return shortest, None
     longest = math.floor(bounds[1] * NS_PER_S)
     if shortest > longest:

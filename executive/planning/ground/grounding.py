@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings, without_static
-from tailor.executive.planning.ground.durations import TimeGrid, time_grid
+from tailor.executive.planning.ground.durations import TimeGrid, numeric_steps, time_grid
 from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
     INSTANCE_STEPS,
@@ -176,11 +176,13 @@ class _Maker:
     def __init__(self, world: StaticWorld, limit: GroundingLimit) -> None:
         self._world = world
         self._facts = FactTable((), limit)
+        self._limit = limit
         self._actions: list[GroundAction] = []
         self._bytes = 0
 
     def add(self, schema: Action, binding: Binding) -> None:
         """Makes one more action unless it is never applicable or achieves nothing."""
+        self._limit.spend(numeric_steps(schema))
         action = instance(len(self._actions), schema, binding, self._world, self._facts)
         if action is None:
             return

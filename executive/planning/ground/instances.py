@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import duration_range, evaluate, range_ns
+from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
 from tailor.executive.planning.ground.ground_action import (
     INSTANT,
     MOMENTS,
@@ -42,6 +42,8 @@ def instance(
     cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
     if bounds is None or conditions is None or cost is None or cost < 0:
         return None
+    if max(bounds[0], cost) > MAX_NUMBER:
+        raise TooMuchToGround(f"the duration or the cost of '{schema.name}' is above {MAX_NUMBER:g}")
     stated = _effects(schema, binding, world, facts)
     required = {(part, span[1]) for part, span in conditions}
     useful = [effect for effect in stated if (effect.literal, effect.moment) not in required]

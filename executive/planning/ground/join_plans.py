@@ -18,11 +18,16 @@ Test = Callable[[Sequence[str]], bool]
 
 
 class FactIndex:
-    """Facts by predicate and by the arguments at some positions; only the tables that a plan uses are kept."""
+    """Facts by predicate and by the arguments at some positions; only the tables that a plan uses are kept.
+
+    `entered` counts the objects in the sets of types, and of those that static facts about one object narrow down.
+    """
 
     def __init__(self, world: StaticWorld) -> None:
         self._tables: dict[str, dict[tuple[int, ...], Table]] = {name: {} for name in world.domain.predicates}
         self._objects: dict[tuple[str, ...], tuple[Table, frozenset[str]]] = {}
+        self._narrowed: dict[tuple[tuple[str, ...], frozenset[str]], frozenset[str]] = {}
+        self.entered = 0
         self._world = world
 
     def table(self, predicate: str, positions: tuple[int, ...]) -> Table:
@@ -35,7 +40,20 @@ class FactIndex:
         if objects is None:
             names = self._world.choices(variable)
             objects = self._objects[variable.types] = ({(): [("", name) for name in names]}, frozenset(names))
+            self.entered += len(names)
         return objects
+
+    def narrowed(self, variable: Typed, predicates: frozenset[str]) -> frozenset[str]:
+        """The objects of a variable's types of which static facts of all these predicates hold."""
+        names = self.objects(variable)[1]
+        if not predicates:
+            return names
+        key = (variable.types, predicates)
+        if key not in self._narrowed:
+            facts = self._world.facts
+            self._narrowed[key] = frozenset(n for n in names if all((each, n) in facts for each in predicates))
+            self.entered += len(names)
+        return self._narrowed[key]
 
     def insert(self, fact: Fact) -> None:
         """Enters a fact in all tables of its predicate."""
@@ -91,7 +109,7 @@ class _Planner:
         self._index = index
         self._world = world
         self._slots = {variable.name: n for n, variable in enumerate(rule.variables)}
-        self._objects = [index.objects(variable) for variable in rule.variables]
+        self._variables = rule.variables
         self._tests = list(rule.tests)
         self._atoms = {atom: self._measures(atom) for atom in rule.body}
         self.left = list(rule.body)
@@ -116,7 +134,7 @@ class _Planner:
     def step(self, atom: Atom | None, lookup: bool = True) -> JoinStep:
         """The step that matches an atom (None: no atom); without `lookup` its fact is given."""
         key: dict[int, Slot] = {}
-        fresh: dict[int, tuple[int, int, frozenset[str]]] = {}
+        fresh: dict[int, tuple[int, int]] = {}
         checks: list[tuple[int, Slot]] = []
         for position, slot in enumerate(self.slots(atom.terms) if atom else (), 1):
             if lookup and (isinstance(slot, str) or slot in self.bound):
@@ -124,24 +142,24 @@ class _Planner:
             elif isinstance(slot, str) or slot in fresh:
                 checks.append((position, slot))
             else:
-                fresh[slot] = (position, slot, self._objects[slot][1])
+                fresh[slot] = (position, slot)
         self.bound.update(fresh)
         table = self._index.table(atom.predicate, tuple(key)) if atom and lookup else {}
-        narrowed = tuple((position, slot, self._allowed(slot, names)) for position, slot, names in fresh.values())
+        narrowed = tuple((position, slot, self._allowed(slot)) for position, slot in fresh.values())
         return JoinStep(table, tuple(key.values()), narrowed, tuple(checks), self._ready_tests())
 
     def choice(self, variable: int) -> JoinStep:
         """The step that tries every object of a variable that no atom binds."""
         self.bound.add(variable)
-        table, names = self._objects[variable]
-        return JoinStep(table, (), ((1, variable, self._allowed(variable, names)),), (), self._ready_tests())
+        table, _ = self._index.objects(self._variables[variable])
+        return JoinStep(table, (), ((1, variable, self._allowed(variable)),), (), self._ready_tests())
 
-    def _allowed(self, variable: int, names: frozenset[str]) -> frozenset[str]:
+    def _allowed(self, variable: int) -> frozenset[str]:
         """Those of a variable's objects of which all static facts about it alone hold: no test of each binding."""
-        facts = self._world.facts
         own = [atom for atom in self.left if self._is_static(atom) and self.slots(atom.terms) == (variable,)]
-        self.left = [atom for atom in self.left if atom not in own]
-        return frozenset(name for name in names if all((atom.predicate, name) in facts for atom in own))
+        if own:
+            self.left = [atom for atom in self.left if atom not in own]
+        return self._index.narrowed(self._variables[variable], frozenset(atom.predicate for atom in own))
 
     def _ready_tests(self) -> tuple[Test, ...]:
         """What can be tested now: of the atoms the static ones, without a lookup."""

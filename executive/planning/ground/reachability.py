@@ -36,7 +36,7 @@ class Reachability:
     """The fixpoint of one world and initial state."""
 
     def __init__(self, world: StaticWorld, initial: Iterable[Fact], limit: GroundingLimit) -> None:
-        """Prepares the rules; `initial` are the fluent facts that hold at first or at a known time."""
+        """Does no work yet; `initial` are the fluent facts that hold at first or at a known time."""
         self._world = world
         self._limit = limit
         self._joins = 0
@@ -46,9 +46,6 @@ class Reachability:
         self._pending = deque(self._known)
         self._static_rules: list[tuple[Rule, JoinPlan]] = []
         self._triggers: dict[str, list[tuple[Rule, JoinPlan]]] = {}
-        for rule in (rule for action in world.domain.actions for rule in rules_of(action, world)):
-            self._add(rule)
-        self._index.insert_all(world.facts)
 
     def _add(self, rule: Rule) -> None:
         fluent = [atom for atom in rule.body if atom.predicate not in self._world.static]
@@ -58,16 +55,22 @@ class Reachability:
             self._triggers.setdefault(atom.predicate, []).append((rule, self._plan(rule, atom)))
 
     def _plan(self, rule: Rule, trigger: Atom | None) -> JoinPlan:
+        self._limit.subject, before = f"'{rule.action}'", self._index.entered
         plan = join_plan(rule, trigger, self._index, self._world)
-        self._limit.spend(STEPS_PER_PLAN + STEPS_PER_JOIN * len(plan.steps))
+        entered = self._index.entered - before
+        self._limit.spend(STEPS_PER_PLAN + STEPS_PER_JOIN * len(plan.steps) + entered // JOINS_PER_STEP)
         return plan
 
     def run(self) -> Iterator[Reached | None]:
-        """Yields None every CHECK_EVERY candidates and after every fact, and the result at the end.
+        """Yields None after every rule and fact, and every CHECK_EVERY candidates, and the result at the end.
 
         Raises:
           TooMuchToGround: The limit is reached.
         """
+        for rule in (rule for action in self._world.domain.actions for rule in rules_of(action, self._world)):
+            self._add(rule)
+            yield None
+        self._index.insert_all(self._world.facts)
         for rule, plan in self._static_rules:
             yield from self._fire(rule, plan, ())
         while self._pending:

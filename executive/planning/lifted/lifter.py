@@ -43,17 +43,17 @@ class Lifter:
             case Not(part):
                 return self.lift(part, names, not positive)
             case And(parts) | Or(parts):
-                lifted = (self.lift(part, names, positive) for part in parts)
+                lifted = dict.fromkeys(self.lift(part, names, positive) for part in parts)  # each once
                 return conjunction(lifted) if isinstance(formula, And) == positive else disjunction(lifted)
             case Quantified(every, variables, part):
                 if every == positive:
                     return conjunction(self.lift(part, inner, positive) for inner in self.choices(variables, names))
                 return self._some(variables, part, names, positive)
 
-    def choices(self, variables: tuple[Typed, ...], names: Names) -> Iterator[Names]:
-        """All extensions of the names by objects for the variables."""
+    def choices(self, variables: tuple[Typed, ...], names: Names, steps: int = 1) -> Iterator[Names]:
+        """All extensions of the names by objects for the variables; each counts as so many formulas."""
         for inner in bindings(variables, names, self._world):
-            self._limit.spend()
+            self._limit.spend(steps)
             yield inner
 
     def _some(self, variables: tuple[Typed, ...], part: Formula, names: Names, positive: bool) -> LiftedFormula:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import TimeGrid, duration_range, range_ns
+from tailor.executive.planning.ground.durations import TimeGrid, duration_range, numeric_steps, range_ns
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -50,6 +50,7 @@ def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple
     ]
     expanded: list[Schema] = []
     for action, names in renamed:
+        limit.subject = f"'{action.name}'"
         expanded += _schemata(action, names, Lifter(world, parameters, limit), world, grid)
     return tuple(sorted(expanded, key=lambda schema: schema.name))
 
@@ -69,6 +70,7 @@ def _schemata(
     for condition in action.conditions:
         parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lift(condition.formula, names))
         spanned += [(part, span_of(condition.when, durative)) for part in parts]
+    spanned = list(dict.fromkeys(spanned))  # each once, or each would be an open condition
     if any(part == FALSE for part, _ in spanned):
         return
     conditions = tuple((part, span) for part, span in spanned if not isinstance(part, Equality))
@@ -100,7 +102,8 @@ def _durations(
         yield {}, (Fraction(0), Fraction(0))
         return
     relevant = {term for bound in action.duration for term in _terms(bound.value)}
-    for fixed in lifter.choices(tuple(p for p in action.parameters if p.name in relevant), {}):
+    parameters = tuple(p for p in action.parameters if p.name in relevant)
+    for fixed in lifter.choices(parameters, {}, 1 + numeric_steps(action)):
         durations = duration_range(action.duration, fixed, world)
         if durations is not None:
             yield fixed, durations

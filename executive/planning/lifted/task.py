@@ -130,6 +130,7 @@ def lifted_task(
     if rng is not None:
         schemas = tuple(shuffled(schema, rng) for schema in schemas)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))
+    limit.subject = "the goal"
     lifter = Lifter(world, numbers, limit)  # of the goal's variables, numbered after those of the schemata
     goal = lifter.lift(problem.goal, {})
     literals = (LiftedLiteral(t.literal.fact[0], t.literal.fact[1:], t.literal.positive) for t in problem.timed)

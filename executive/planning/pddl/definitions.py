@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
-from tailor.executive.planning.pddl.errors import error_at
+from tailor.executive.planning.pddl.errors import PddlError, error_at, place_of
 
-_TOKEN = re.compile(r";[^\n\r]*|[()]")
-_HEAD = re.compile(r"\(\s*define\s*\(\s*(domain|problem)\b", re.IGNORECASE)
+_TOKEN = re.compile(r";[^\n\r]*|[()]|[^\s();]+")
+_HEADS: dict[tuple[str, ...], str] = {("(", "define", "(", kind): kind for kind in ("domain", "problem")}
 
 
 def split_definitions(text: str, source: str) -> tuple[str, str]:
@@ -18,42 +19,55 @@ def split_definitions(text: str, source: str) -> tuple[str, str]:
       source: Name of the text in errors.
 
     Raises:
-      PddlError: It does not hold one of each.
+      PddlError: It does not hold one of each and nothing else.
     """
     found: dict[str, str] = {}
-    for start, end in _spans(text):
-        head = _HEAD.match(text, start)
-        kind = head[1].lower() if head else ""
-        if kind and kind in found:
-            raise error_at(source, *_place(text, start), f"a second {kind}")
-        if kind:
-            found[kind] = _blank(text[:start]) + text[start:end]
-    for kind in ("domain", "problem"):
+    for start, end, head in _spans(text, source):
+        kind = _HEADS.get(head)
+        if kind is None:
+            raise _error(source, text, start, "expected (define (domain ...) ...) or (define (problem ...) ...)")
+        if kind in found:
+            raise _error(source, text, start, f"a second {kind}")
+        found[kind] = _blank(text[:start]) + text[start:end]
+    for kind in _HEADS.values():
         if kind not in found:
-            raise error_at(
-                source, 1, 1, f"expected a domain and a problem in one text, found no (define ({kind} ...) ...)"
-            )
+            what = f"expected a domain and a problem in one text, found no (define ({kind} ...) ...)"
+            raise error_at(source, 1, 1, what)
     return found["domain"], found["problem"]
 
 
-def _spans(text: str) -> list[tuple[int, int]]:
-    """Start and end of the outermost parentheses; what is never closed ends with the text."""
-    spans, depth, start = [], 0, 0
+def _spans(text: str, source: str) -> Iterator[tuple[int, int, tuple[str, ...]]]:
+    """Start, end and the first four words of each outermost list.
+
+    Raises:
+      PddlError: Anything but lists and comments, or unbalanced parentheses.
+    """
+    opened: list[int] = []
+    head: list[str] = []
     for match in _TOKEN.finditer(text):
-        if match.group() == "(":
-            start = match.start() if depth == 0 else start
-            depth += 1
-        elif match.group() == ")" and depth:
-            depth -= 1
-            if depth == 0:
-                spans.append((start, match.end()))
-    return [*spans, (start, len(text))] if depth else spans
+        word = match[0]
+        if word[0] == ";":
+            continue
+        if not opened:
+            head = []
+        if len(head) < 4:
+            head.append(word.lower())
+        if word == "(":
+            opened.append(match.start())
+        elif not opened:
+            what = "this parenthesis was never opened" if word == ")" else f"expected '(', found '{word}'"
+            raise _error(source, text, match.start(), what)
+        elif word == ")":
+            start = opened.pop()
+            if not opened:
+                yield start, match.end(), tuple(head)
+    if opened:
+        raise _error(source, text, opened[-1], "this parenthesis is never closed")
+
+
+def _error(source: str, text: str, position: int, what: str) -> PddlError:
+    return error_at(source, *place_of(text, position), what)
 
 
 def _blank(text: str) -> str:
     return re.sub(r"[^\n\r]", " ", text)
-
-
-def _place(text: str, position: int) -> tuple[int, int]:
-    lines = text[:position].splitlines() or [""]
-    return len(lines), len(lines[-1]) + 1

@@ -7,13 +7,20 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.action_reader import read_action
 from tailor.executive.planning.pddl.derived_reader import with_derived
-from tailor.executive.planning.pddl.formula_reader import Scope
+from tailor.executive.planning.pddl.formula_reader import CONNECTIVES, Scope
 from tailor.executive.planning.pddl.language import Domain, Typed
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
-from tailor.executive.planning.pddl.typed_lists import read_typed, variables_of
+from tailor.executive.planning.pddl.s_expressions import (
+    Form,
+    Node,
+    Word,
+    form_of,
+    name_of,
+    parts_in_order,
+    read_form,
+    word_of,
+)
+from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, ancestors_of, read_typed, read_types, variables_of
 
-ABOVE_ALL = "the type 'object' is above all others and has none above itself"
-MAX_TYPES = 500  # the largest competition domain has 30
 SUPPORTED = frozenset(
     {
         ":strips", ":typing", ":equality", ":negative-preconditions", ":disjunctive-preconditions",
@@ -67,7 +74,7 @@ def define_name(form: Form, kind: str) -> str:
     title = form_of(form.items[1], f"({kind} name)")
     if title.head != kind or len(title.items) != 2:
         raise title.place.error(f"expected ({kind} name)")
-    return word_of(title.items[1], f"the {kind}'s name")
+    return name_of(title.items[1], f"the {kind}'s name")
 
 
 def _declare(form: Form, domain: Domain) -> Domain:
@@ -78,12 +85,15 @@ def _declare(form: Form, domain: Domain) -> Domain:
             check_requirements(rest)
             return domain
         case ":types":
-            types = _types(form)
-            _reject_cycles(form, types)
-            return replace(domain, types=types, ancestors=_ancestors(types))
+            types = read_types(form)
+            return replace(domain, types=types, ancestors=ancestors_of(types))
         case ":constants":
-            return replace(domain, constants=read_typed(rest, domain.types))
+            constants = read_typed(rest, domain.types)
+            if len(constants) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} constants")
+            return replace(domain, constants=constants)
         case ":predicates":
+            _reject_connectives(rest)
             return replace(domain, predicates=_signatures(rest, domain))
         case ":functions":
             return replace(domain, functions=_signatures(_without_types(rest), domain))
@@ -103,58 +113,22 @@ def check_requirements(nodes: list[Node]) -> None:
             raise node.place.unsupported(f"the requirement {word}")
 
 
-def _types(form: Form) -> Mapping[str, tuple[str, ...]]:
-    types: dict[str, tuple[str, ...]] = {"object": ()}
-    for typed in read_typed(form.items[1:], None):
-        if typed.name != "object":
-            types[typed.name] = typed.types
-        elif typed.types != ("object",):
-            raise next(n for n in form.items[1:] if isinstance(n, Word) and n.text == "object").place.error(ABOVE_ALL)
-    for parents in list(types.values()):
-        for parent in parents:  # a parent that is named only behind a dash is a type as well
-            types.setdefault(parent, ("object",))
-    if len(types) > MAX_TYPES:
-        raise form.place.error(f"more than {MAX_TYPES} types")
-    return types
-
-
-def _ancestors(types: Mapping[str, tuple[str, ...]]) -> Mapping[str, frozenset[str]]:
-    """By type, itself and all types above it."""
-    ancestors = {}
-    for kind in types:
-        reached, pending = {kind, "object"}, [kind]
-        while pending:
-            more = [parent for parent in types[pending.pop()] if parent not in reached]
-            reached.update(more)
-            pending += more
-        ancestors[kind] = frozenset(reached)
-    return ancestors
-
-
-def _reject_cycles(form: Form, types: Mapping[str, tuple[str, ...]]) -> None:
-    """Raises at the first type that is above itself."""
-    for word in form.items[1:]:
-        if isinstance(word, Word) and word.text in types and word.text != "object":
-            reached: set[str] = set()
-            pending = list(types[word.text])
-            while pending:
-                kind = pending.pop()
-                if kind == word.text:
-                    raise word.place.error(f"the type '{kind}' is above itself")
-                if kind not in reached:
-                    reached.add(kind)
-                    pending += types[kind]
-
-
 def _signatures(nodes: list[Node], domain: Domain) -> Mapping[str, tuple[Typed, ...]]:
     signatures: dict[str, tuple[Typed, ...]] = {}
     for node in nodes:
         form = form_of(node, "(name ?parameter ...)")
-        name = word_of(form.items[0], "a name") if form.items else ""
+        name = name_of(form.items[0], "a name") if form.items else ""
         if name in signatures or not name:
             raise form.place.error(f"'{name}' is declared twice" if name else "expected a name")
         signatures[name] = variables_of(Form(form.place, form.items[1:]), domain.types)
     return signatures
+
+
+def _reject_connectives(nodes: list[Node]) -> None:
+    """Raises at a predicate that no formula could name, because its name means something else there."""
+    for node in nodes:
+        if isinstance(node, Form) and node.head in CONNECTIVES:
+            raise node.items[0].place.error(f"'{node.head}' cannot be the name of a predicate")
 
 
 def _without_types(nodes: list[Node]) -> list[Node]:

@@ -27,6 +27,15 @@ def shortened(text: str) -> str:
     return text if len(text) <= MAX_CHARACTERS else f"{text[: MAX_CHARACTERS - 3]}..."
 
 
+LINE_END = re.compile(r"\r\n|\r|\n")
+
+
+def place_of(text: str, position: int) -> tuple[int, int]:
+    """Line and column of a position in a text, both from 1; any of the three line ends counts."""
+    *before, line = LINE_END.split(text[:position])
+    return len(before) + 1, len(line) + 1
+
+
 def error_at(source: str, line: int, column: int, what: str) -> PddlError:
     """An error at one place of a text; line and column count from 1."""
     return PddlError(f"{source}:{line}:{column}: {shortened(what)}")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tailor.executive.planning.pddl.language import (
     And,
@@ -19,19 +20,25 @@ from tailor.executive.planning.pddl.language import (
     When,
 )
 from tailor.executive.planning.pddl.s_expressions import Form, Node, Place, form_of, word_of
-from tailor.executive.planning.pddl.substitution import substituted
+from tailor.executive.planning.pddl.substitution import size, substituted
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
+MAX_PARTS = 100_000  # of all derived predicates in a text: a sixth of a second
 COMPARISONS = frozenset({"<", ">", "<=", ">="})
+CONNECTIVES = COMPARISONS | {"and", "or", "not", "imply", "forall", "exists", "=", "when", "preference"}
 MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end"): "end", ("over", "all"): "over"}
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names that a formula may use: those of the domain, and the visible terms with their types."""
+    """The names that a formula may use: those of the domain, and the visible terms with their types.
+
+    `parts` counts, for all formulas of a text, the parts that derived predicates became.
+    """
 
     domain: Domain
     terms: Mapping[str, tuple[str, ...]]
+    parts: Counter[str] = field(default_factory=Counter, compare=False)
 
     @classmethod
     def of(cls, domain: Domain, objects: Iterable[Typed]) -> Scope:
@@ -40,7 +47,7 @@ class Scope:
 
     def extended(self, names: Iterable[Typed]) -> Scope:
         """This scope with more terms, which hide earlier ones of the same name."""
-        return Scope(self.domain, {**self.terms, **{t.name: t.types for t in names}})
+        return Scope(self.domain, {**self.terms, **{t.name: t.types for t in names}}, self.parts)
 
     def may_be(self, term: str, types: tuple[str, ...]) -> bool:
         """Whether the term may be of one of the types."""
@@ -81,7 +88,7 @@ def read_formula(node: Node, scope: Scope) -> Formula:
         case _ if head in COMPARISONS:
             raise form.place.unsupported(f"a numeric condition ({head} ...)")
         case _:
-            return _defined(_atom(form, scope), scope.domain)
+            return _defined(_atom(form, scope), form, scope)
 
 
 def _quantified(form: Form, scope: Scope) -> Formula:
@@ -107,11 +114,14 @@ def _term(node: Node, scope: Scope) -> str:
     return term
 
 
-def _defined(atom: Atom, domain: Domain) -> Formula:
+def _defined(atom: Atom, form: Form, scope: Scope) -> Formula:
     """The atom, or the definition of its predicate."""
-    definition = domain.derived.get(atom.predicate)
+    definition = scope.domain.derived.get(atom.predicate)
     if definition is None:
         return atom
+    scope.parts["derived"] += size(definition.formula)
+    if scope.parts["derived"] > MAX_PARTS:
+        raise form.place.error(f"'{atom.predicate}' and other derived predicates take more than {MAX_PARTS} parts")
     return substituted(definition.formula, dict(zip(definition.parameters, atom.terms, strict=True)))
 
 

@@ -111,6 +111,11 @@ class Operation:
 Numeric = Number | Function | Operation
 
 
+def numbers_in(value: Numeric) -> int:
+    """How many constants and functions an arithmetic expression has."""
+    return sum(map(numbers_in, value.operands)) if isinstance(value, Operation) else 1
+
+
 @dataclass(frozen=True, slots=True)
 class DurationBound:
     """One constraint (operator ?duration value) of a durative action."""

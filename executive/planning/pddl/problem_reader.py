@@ -6,15 +6,23 @@ from dataclasses import dataclass, field, replace
 from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.pddl.action_reader import number_of
 from tailor.executive.planning.pddl.domain_reader import check_requirements, define_name
 from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_atom, read_formula, read_terms
 from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
+from tailor.executive.planning.pddl.numeric_reader import number_of
 from tailor.executive.planning.pddl.problem import Problem, TimedLiteral
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, parts_in_order, read_form, word_of
-from tailor.executive.planning.pddl.typed_lists import read_typed
+from tailor.executive.planning.pddl.s_expressions import (
+    Form,
+    Node,
+    Place,
+    Word,
+    form_of,
+    parts_in_order,
+    read_form,
+    word_of,
+)
+from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, read_typed
 
-MAX_OBJECTS = 10_000
 MAX_TIMED = 200  # each is a node of every temporal network
 NANOSECOND_S = 1e-9  # times are whole nanoseconds; a literal at time 0 is one of the initial state
 _METRICS: dict[str, OneOf["makespan", "cost"]] = {
@@ -30,6 +38,7 @@ class _Draft:
 
     objects: tuple[Typed, ...] = ()
     initial: dict[Fact, None] = field(default_factory=dict)
+    denied: set[Fact] = field(default_factory=set)
     values: dict[Fact, float] = field(default_factory=dict)
     timed: list[TimedLiteral] = field(default_factory=list)
     goal: Formula | None = None
@@ -73,8 +82,8 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
             check_requirements(rest)
         case ":objects":
             draft.objects = read_typed(rest, domain.types)
-            if len(draft.objects) > MAX_OBJECTS:
-                raise form.place.error(f"more than {MAX_OBJECTS} objects")
+            if len(draft.objects) + len(domain.constants) > MAX_OBJECTS:
+                raise form.place.error(f"more than {MAX_OBJECTS} objects and constants")
             _reject_constants(form, draft.objects, domain)
         case ":init":
             scope = Scope.of(domain, draft.objects)
@@ -123,17 +132,21 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
         if TimedLiteral(time_s, replace(literal, positive=not literal.positive)) in draft.timed:
             raise form.place.error(f"{literal} and its opposite at the same time")
         if time_s < NANOSECOND_S:
-            _enter(literal, draft)
+            _enter(literal, draft, form.place)
         else:
             draft.timed.append(TimedLiteral(time_s, literal))
     else:
-        _enter(_literal(form, scope), draft)
+        _enter(_literal(form, scope), draft, form.place)
 
 
-def _enter(literal: Literal, draft: _Draft) -> None:
+def _enter(literal: Literal, draft: _Draft, place: Place) -> None:
     """Enters a literal of the initial state, where all else is false."""
+    if literal.fact in (draft.denied if literal.positive else draft.initial):
+        raise place.error(f"{literal} and its opposite in the initial state")
     if literal.positive:
         draft.initial.setdefault(literal.fact)
+    else:
+        draft.denied.add(literal.fact)
 
 
 def _is_timed(form: Form) -> bool:
@@ -166,10 +179,10 @@ def _read_value(form: Form, draft: _Draft, scope: Scope) -> None:
 def _read_metric(form: Form, draft: _Draft) -> None:
     expect(form, 2)
     direction = word_of(form.items[1], "minimize")
-    quantity = form.items[2]
-    name = quantity.text if isinstance(quantity, Word) else quantity.head
+    quantity = _text_of(form.items[2])
+    name = quantity[1:-1] if quantity[0] == "(" else quantity
     if direction != "minimize" or name not in _METRICS:
-        raise form.place.unsupported(f"the metric {direction} {_text_of(quantity)}")
+        raise form.place.unsupported(f"the metric {direction} {quantity}")
     draft.metric = _METRICS[name]
 
 

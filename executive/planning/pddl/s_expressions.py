@@ -9,14 +9,14 @@ import re
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tailor.executive.planning.pddl.errors import PddlError, Unsupported, error_at, shortened
+from tailor.executive.planning.pddl.errors import LINE_END, PddlError, Unsupported, error_at, place_of, shortened
 
 MAX_CHARACTERS = 250_000  # read in a tenth of a second; the problems at hand have 10 000 at most
 MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20
 
 _new = tuple.__new__  # makes a named tuple in half the time of its constructor
-_LINE_END = re.compile(r"\r\n|\r|\n")
 _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f-\x9f]")  # no name has them: printed, they command a terminal
 
 
 class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of a text
@@ -63,12 +63,14 @@ def read_form(text: str, source: str) -> Form:
     """The single form in a text.
 
     Raises:
-      PddlError: Unbalanced parentheses, words outside the form, or a text beyond the limits.
+      PddlError: Unbalanced parentheses, words outside the form, control characters, or a text beyond the limits.
     """
     if len(text) > MAX_CHARACTERS:
         raise error_at(source, 1, 1, f"the text has {len(text)} characters, more than {MAX_CHARACTERS}")
+    if control := _CONTROL.search(text):
+        raise error_at(source, *place_of(text, control.start()), f"a control character, U+{ord(control[0]):04X}")
     stack = [Form(Place(source, 1, 1))]
-    for row, line in enumerate(_LINE_END.split(text), 1):
+    for row, line in enumerate(LINE_END.split(text), 1):
         _read_line(line, row, source, stack)
     if len(stack) > 1:
         raise stack[-1].place.error("this parenthesis is never closed")
@@ -115,6 +117,15 @@ def word_of(node: Node, what: str) -> str:
     if isinstance(node, Word):
         return node.text
     raise node.place.error(f"expected {what}, found a list")
+
+
+def name_of(node: Node, what: str) -> str:
+    """The node's text as a name; raises PddlError if it is a list, a variable, a keyword or begins with a dash."""
+    name = word_of(node, what)
+    if name[0] in "?:-":
+        advice = "; a '-' between names and their type stands alone" if name[0] == "-" else ""
+        raise node.place.error(f"expected {what}, found '{name}'{advice}")
+    return name
 
 
 def form_of(node: Node, what: str) -> Form:

@@ -1,10 +1,11 @@
-"""Arithmetic on orderings of steps: levels and transitive closure."""
+"""Arithmetic on orderings of steps: levels, transitive closure, bounds of a schedule."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.plans.portions import Work
 
 Pair = tuple[int, int]
@@ -69,3 +70,22 @@ def closure(orderings: Iterable[Pair]) -> tuple[Pair, ...]:
         beyond = after[middle]
         after.update((i, later | beyond) for i, later in after.items() if later >> middle & 1)
     return tuple((i, j) for i in sorted(after) for j in range(after[i].bit_length()) if after[i] >> j & 1)
+
+
+def scheduled_bounds(plan: Plan) -> tuple[tuple[int | None, ...], ...]:
+    """Bounds as `Plan.bounds` has them, of a durative plan that was printed without: its times and orderings.
+
+    Each step starts at its time or later and lasts as long as planned. Empty unless the steps are numbered 1, 2, ...
+    """
+    size = 2 * len(plan.steps) + 1
+    if not plan.durative or sorted(step.id for step in plan.steps) != list(range(1, len(plan.steps) + 1)):
+        return ()
+    rows: list[list[int | None]] = [[0 if a == b else None for b in range(size)] for a in range(size)]
+    for step in plan.steps:
+        start, end = 2 * step.id - 1, 2 * step.id
+        begins, lasts = round(step.start / plan.tick_s), round(step.duration / plan.tick_s)
+        rows[start][0], rows[end][0] = -begins, -begins - lasts
+        rows[start][end], rows[end][start] = lasts, -lasts
+    for i, j in plan.orderings:
+        rows[2 * j - 1][2 * i] = 0
+    return tuple(map(tuple, rows))

@@ -8,6 +8,7 @@ from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
+from tailor.executive.planning.plans.schedule import scheduled_bounds
 from tailor.executive.planning.semantics.links import linking
 from tailor.executive.planning.semantics.state import Objects
 from tailor.executive.planning.semantics.suffix import relinking
@@ -44,8 +45,12 @@ def completion(plan: Plan, domain: Domain, problem: Problem) -> Work[Plan | str]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
     if any(link.literal.fact[0] in changing for link in absent):
-        return (yield from relinking(located, domain, objects)) or "its steps cannot be linked"
-    return replace(located, links=_by_consumer(located, (*absent, *plan.links)))
+        linked = yield from relinking(located, domain, objects)
+    else:
+        linked = replace(located, links=_by_consumer(located, (*absent, *plan.links)))
+    if linked is None:
+        return "its steps cannot be linked"
+    return linked if linked.bounds else replace(linked, bounds=scheduled_bounds(linked))
 
 
 def _by_consumer(plan: Plan, links: tuple[Link, ...]) -> tuple[Link, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tailor.executive.planning.structures.orderings import GOAL, INITIAL, HasDuration
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, INITIAL, HasDuration
 
 UNBOUNDED = 10**24  # units; sums of two stay far above any real bound
 _FAR = UNBOUNDED // 2  # as good as unbounded
@@ -18,11 +18,15 @@ _FREE: Row = (UNBOUNDED, UNBOUNDED)  # bounds between a new step's start and end
 
 
 class TemporalNetwork(NamedTuple):
-    """Bounds between all nodes; the goal has no time of its own and stays unbounded."""
+    """Bounds between all nodes; the goal has no time of its own and stays unbounded.
+
+    `first` is the node of the first step, after those of the timed literals.
+    """
 
     rows: tuple[Row, ...]
     late: tuple[int, ...]
     tick: int = 1
+    first: int = FIRST
 
     @classmethod
     def start(cls, timed: tuple[int, ...], tick: int = 1) -> TemporalNetwork:
@@ -32,7 +36,7 @@ class TemporalNetwork(NamedTuple):
             tuple(0 if a == b else UNBOUNDED if s is None or t is None else t - s for a, s in enumerate(times))
             for b, t in enumerate(times)
         )
-        return cls(rows, tuple(_late(row, node, tick) for node, row in enumerate(rows)), tick)
+        return cls(rows, tuple(_late(row, node, tick) for node, row in enumerate(rows)), tick, len(times))
 
     @property
     def entries(self) -> int:
@@ -65,7 +69,7 @@ class TemporalNetwork(NamedTuple):
                 if other < start:
                     late[other] = _late(rows[other], other, tick)
         late += [_late(rows[start], start, tick), _late(rows[end], end, tick)]
-        return TemporalNetwork(tuple(rows), tuple(late), tick)
+        return TemporalNetwork(tuple(rows), tuple(late), tick, self.first)
 
     def ordered(self, a: int, b: int) -> TemporalNetwork | None:
         """See `Orderings`: t_a <= t_b - 1 tick."""
@@ -80,12 +84,12 @@ class TemporalNetwork(NamedTuple):
             if reach < row[b]:
                 rows[node] = changed = _through(row, reach, via)
                 late[node] = _late(changed, node, tick)
-        return TemporalNetwork(tuple(rows), tuple(late), tick)
+        return TemporalNetwork(tuple(rows), tuple(late), tick, self.first)
 
     def earliest(self) -> tuple[float, ...]:
-        """Earliest times in units; the goal's is the makespan."""
+        """Earliest times in units; the goal's is the makespan: the last end of a step, whatever happens by itself."""
         times = [-bound for bound in self.rows[INITIAL]]
-        times[GOAL] = max([0, *times[GOAL + 1 :]])
+        times[GOAL] = max([0, *times[self.first :]])
         return tuple(times)
 
     def bounds(self) -> tuple[tuple[int | None, ...], ...]:

@@ -99,6 +99,11 @@ def test_no_import_is_bare() -> None:
     assert {path: bare for path in PROJECT_FILES if (bare := top_names(path) & OURS)} == {}
 
 
+def test_rooms_import_the_planner_itself_and_not_its_name_for_programs() -> None:
+    """`tailor.planning` is in no room: an import of it would escape the table."""
+    assert [path for path in PROJECT_FILES if "tailor.planning" in imported_names(path)] == []
+
+
 def test_the_core_is_pure() -> None:
     core = [path for path in PROJECT_FILES if path.startswith("executive/")]
     models = {(path, p) for path in core for p in imported_modules(path) if p.startswith("models/")}

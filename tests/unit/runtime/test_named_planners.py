@@ -1,10 +1,11 @@
 """Planners from Python packages run by name; one that is not installed is reported with its pip command."""
 
+import math
 from importlib.util import find_spec
 
 import pytest
 
-from tailor.executive.planning import validate
+from tailor.executive.planning import parse_domain, parse_problem, validate
 from tailor.runtime.planners import named
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
@@ -36,6 +37,23 @@ def test_kairos_plans_are_sound_and_linked(command, name):
     assert plan_by(command, name).links
 
 
+@pytest.mark.parametrize("tick_s", [0.01, 0.25, 2.0])
+def test_kairos_keeps_dependent_events_a_tick_apart(tick_s, capsys):
+    pytest.importorskip("kairos")
+    texts = (
+        """(define (domain d) (:requirements :durative-actions) (:predicates (p) (q))
+          (:durative-action first :parameters () :duration (= ?duration 1.4) :condition () :effect (at end (p)))
+          (:durative-action second :parameters () :duration (= ?duration 2.3) :condition (at start (p))
+            :effect (and (at start (not (p))) (at end (q)))))""",
+        "(define (problem x) (:domain d) (:init) (:goal (q)))",
+    )
+    domain = parse_domain(texts[0])
+    for limit_s in (math.inf, 0.05):
+        command = named.kairos_command(limit_s, tick_s)
+        plan = external(command, texts, domain, parse_problem(texts[1], domain), 60.0).plan
+        assert [step.start for step in plan.steps] == [0, pytest.approx(1.4 + tick_s)]
+
+
 @pytest.mark.parametrize(
     ("command", "name"),
     [("up:pyperplan", "kitchen-s2"), ("up:tamer", "kitchen-s2"), ("up:tamer", "kitchen-durative-s2")],
@@ -55,7 +73,9 @@ def test_a_missing_package_is_one_line_with_the_pip_command(command, package, mo
     assert f"the package {package} is not installed, install it with: pip install 'tailor[{extra}]'" in line
 
 
-@pytest.mark.parametrize("command", ["kairos:", "kairos:soon", "kairos:-1", "kairos:inf", "up:"])
+@pytest.mark.parametrize(
+    "command", ["kairos:", "kairos:soon", "kairos:-1", "kairos:inf", "kairos::", "kairos:1:0", "up:"]
+)
 def test_what_follows_the_colon_is_checked(command, monkeypatch):
     monkeypatch.setattr(named, "find_spec", lambda name: object())
     with pytest.raises(UsageError, match="expected"):

@@ -22,10 +22,12 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
+from tailor.runtime.planners.named import kairos_command
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
 from tailor.tools.cli.plan_search import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
 from tailor.tools.planning import options
+from tailor.tools.planning.ignored_options import refuse_ignored
 from tailor.tools.planning.options import MAX_PLANS, settings_of
 from tailor.tools.planning.output import as_json, print_result
 from tailor.tools.planning.pddl_files import read_texts
@@ -35,6 +37,7 @@ configure = options.configure
 
 def run(args: argparse.Namespace) -> int:
     """Plans and prints; returns exit code 0 with a plan, 1 without."""
+    refuse_ignored(args)
     started = time.process_time()
     try:
         texts = read_texts(args.files)  # read once: standard input cannot be read again
@@ -89,8 +92,7 @@ def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, prob
     if args.planner:
         return external(args.planner, texts, domain, problem, limit_s)
     if args.engine == "kairos":
-        name = "kairos" if args.time_limit is None else f"kairos:{limit_s:g}"
-        return external(name, texts, domain, problem, limit_s + GRACE_S)
+        return external(kairos_command(limit_s, args.tolerance), texts, domain, problem, limit_s + GRACE_S)
     settings, limits = settings_of(args), Limits(limit_s, args.memory_limit)
     if args.engine == "auto" and args.node_limit == MAX_PLANS and not args.orders and _kairos_applies(domain):
         plan = anytime_beside_kairos if args.anytime else with_kairos

@@ -59,6 +59,24 @@ def test_slices_change_nothing(checks):
     assert sliced[0].counts == whole[0].counts
 
 
+DELIVERY = """(define (domain delivery) (:requirements :durative-actions :timed-initial-literals)
+  (:predicates (here) (packed) (open))
+  (:durative-action by-bicycle :parameters () :duration (= ?duration 5) :condition () :effect (at end (here)))
+  (:durative-action pack :parameters () :duration (= ?duration 1) :condition () :effect (at end (packed)))
+  (:durative-action by-car :parameters () :duration (= ?duration 1) :condition (at start (packed))
+    :effect (at end (here))))"""
+
+
+@pytest.mark.parametrize("goal", ["(here)", "(and (here) (open))"])
+@pytest.mark.parametrize("ground", [True, False])
+def test_what_happens_later_by_itself_does_not_end_the_search_for_shorter_plans(goal, ground):
+    initial = "(at 100 (open))"
+    texts = (DELIVERY, f"(define (problem p) (:domain delivery) (:init {initial}) (:goal {goal}))")
+    search, results = improvements(*read(*texts), Settings(ground=ground))
+    assert [result.plan.makespan for result in results] == [5.01, 2.02]
+    assert search.ended == "proven"
+
+
 def test_the_first_plan_is_the_one_of_the_sure_rankings():
     domain, problem = own("kitchen-durative-s3")
     fastest = replace(problem, metric="makespan")

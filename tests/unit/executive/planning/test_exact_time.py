@@ -137,3 +137,16 @@ def test_validator_and_search_agree_on_random_durations():
     for _ in range(500):
         bounds = tuple(DurationBound(rng.choice(["=", "<=", ">="]), numeric(rng, 3)) for _ in range(rng.randint(1, 3)))
         assert allowed_durations(bounds, BINDING, VALUES) == duration_range(bounds, BINDING, world)
+
+
+@pytest.mark.parametrize("ground", [True, False])
+@pytest.mark.parametrize(("duration", "cost"), [("{}", "1"), ("1", "{}")])
+@pytest.mark.parametrize("factors", [2, 40])
+def test_a_duration_or_cost_beyond_all_bounds_is_refused_by_its_action(duration, cost, factors, ground):
+    huge = "(* 1e9 " * factors + "1" + ")" * factors
+    domain = f"""(define (domain d) (:predicates (p)) (:functions (total-cost)) (:durative-action act :parameters ()
+      :duration (= ?duration {duration.format(huge)})
+      :effect (and (at end (p)) (at end (increase (total-cost) {cost.format(huge)})))))"""
+    texts = (domain, "(define (problem x) (:domain d) (:init) (:goal (p)) (:metric minimize (total-cost)))")
+    result = solve(*read(*texts), Settings(ground=ground))
+    assert (result.status, result.reason) == ("limit", "the duration or the cost of 'act' is above 1e+09")

@@ -112,3 +112,14 @@ def test_an_unsound_plan_stays_out_and_the_reason_is_told():
     assert "lacks a condition" in completed(replace(whole, steps=whole.steps[1:], links=()), domain, problem)
     wrong = Link(0, Literal(("holding", "r1", "cup1")), whole.steps[0].id)
     assert "causal link" in completed(replace(whole, links=(*whole.links, wrong)), domain, problem)
+
+
+@pytest.mark.parametrize("name", [name for name in OWN if "durative" in name])
+def test_the_times_of_a_plan_in_plain_form_outlive_its_links(name):
+    domain, problem = own(name)
+    plain = parse_plan(format_plan(solve(domain, problem).plan))
+    plan = completed(plain, domain, problem)
+    back = parse_plan(format_links(plan))
+    assert back.steps == plain.steps
+    assert set(plan.orderings) <= set(back.orderings)
+    assert validate(back, domain, problem) == ""

@@ -98,3 +98,48 @@ def test_the_division_into_portions_changes_nothing():
         pass
     assert result == whole
     assert format_links(result.plan) == format_links(whole.plan)
+
+
+def grid_to_clear(objects):
+    """A goal of (objects ** 2) literals, of which all but two hold already."""
+    return read(
+        "(define (domain d) (:predicates (p ?x ?y)) (:action a :parameters (?x ?y) :effect (not (p ?x ?y))))",
+        f"(define (problem t) (:domain d) (:objects {' '.join(f'o{n}' for n in range(objects))}) "
+        "(:init (p o1 o2) (p o2 o3)) (:goal (forall (?x ?y) (not (p ?x ?y)))))",
+    )
+
+
+def test_partial_order_search_has_no_head_start_where_the_goal_alone_needs_thousands_of_refinements():
+    result = solve(*grid_to_clear(40), Settings())
+    assert (result.status, len(result.plan.steps)) == ("solved", 2)
+    assert result.visited < 30
+
+
+def test_what_is_too_large_for_lifted_planning_is_named():
+    result = solve(*grid_to_clear(150), Settings(ground=False, ground_limit=300_000))
+    assert result.reason == "grounding takes more than its limit of 50000 steps, spent at the goal"
+
+
+def doubling(levels):
+    """A chain where each level needs two facts of the one before: additive costs double from level to level."""
+    names = range(levels)
+    actions = " ".join(
+        f"(:action {x}{n} :precondition (and (p{n}) (q{n})) :effect ({x}{n + 1}))" for n in names for x in "pq"
+    )
+    predicates = " ".join(f"(p{n}) (q{n})" for n in range(levels + 1))
+    return read(
+        f"(define (domain d) (:predicates {predicates}) {actions})",
+        f"(define (problem x) (:domain d) (:init (p0) (q0)) (:goal (p{levels})))",
+    )
+
+
+@pytest.mark.parametrize("engine", ["forward", "auto", "pocl"])
+def test_costs_that_double_from_level_to_level_fill_no_memory_and_are_no_proof(engine):
+    domain, problem = doubling(90)
+    plan = solve(domain, problem, Settings(engine=engine)).plan
+    assert len(plan.steps) == 179
+    assert validate(plan, domain, problem) == ""
+
+
+def test_costs_beyond_all_floats_are_no_proof():
+    assert solve(*doubling(1100), Settings(engine="pocl", step_limit=10)).status == "limit"

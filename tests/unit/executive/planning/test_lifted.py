@@ -162,3 +162,16 @@ def test_bombs_for_lifted_planning_end_in_a_limit_within_a_second(name, count):
         assert solve(*task, Settings(ground=False, node_limit=100)).status in ("limit", "unsolvable")
 
     assert min_cpu_s(explode) < 1.0
+
+
+def test_repeated_conditions_are_one_open_condition():
+    domain = """(define (domain d) (:predicates (p ?x) (q)) (:durative-action a :parameters (?x)
+      :duration (= ?duration 1) :condition (and {}) :effect (at end (p ?x))))"""
+    problem = "(define (problem x) (:domain d) (:objects o) (:init (q)) (:goal (and {})))"
+    counts = set()
+    for times in (1, 50):
+        texts = domain.format("(at start (q)) " * times), problem.format("(p o) " * times)
+        result = solve(*read(*texts), Settings(ground=False))
+        assert result.status == "solved"
+        counts.add((result.generated, result.visited))
+    assert len(counts) == 1

@@ -211,3 +211,15 @@ def test_grounding_of_large_problems_is_resumed():
         portions += 1
     assert portions > 10
     assert result == solve(domain, problem, Settings())
+
+
+def test_rules_are_prepared_in_portions():
+    """A tick of the executive advances by a few portions, however many actions a domain has."""
+    actions = " ".join(f"(:action a{n} :parameters (?x ?y ?z) :effect (p ?x ?y ?z))" for n in range(300))
+    domain, problem = read(
+        f"(define (domain d) (:predicates (p ?x ?y ?z)) {actions})",
+        f"(define (problem x) (:domain d) (:objects {' '.join(f'o{n}' for n in range(100))}) (:goal (p o1 o2 o3)))",
+    )
+    search = Search(domain, problem)
+    assert search.advance(CheckBudget(200)) is None, "one check a rule"
+    assert search.advance(CheckBudget(10**6)).status == "limit"

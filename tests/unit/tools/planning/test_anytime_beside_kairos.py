@@ -21,11 +21,14 @@ def planned(problem_text, limit_s):
     return result.plan, planner
 
 
-def test_kairos_has_a_plan_of_eight_cups_where_the_search_has_none():
+def test_kairos_has_a_plan_of_eight_cups_where_the_search_has_none(capsys):
     pytest.importorskip("kairos")
     plan, planner = planned(durative_problem_text(8), 0.3)
     assert planner == "kairos"
     assert plan.makespan < 8 * 28
+    improvement, end = capsys.readouterr().err.splitlines()[-2:]
+    assert improvement == f"makespan {plan.makespan:g}, {len(plan.steps)} steps, by kairos-planner"
+    assert end == "best plan found: none better within 0.3 s"
 
 
 def test_a_plan_that_is_no_better_does_not_count(monkeypatch, tmp_path):
