@@ -74,5 +74,8 @@ def draw_curves(
         axis.fill_between(x, low, high, color=colour, alpha=0.15)
     axis.axhline(0, color=PALE)
     axis.set(xscale="log", xlabel=x_label, ylabel=y_label)
+    places = sorted({point[0] for points in curves.values() for point in points})
+    axis.set_xticks(places, [f"{x:g}" for x in places])
+    axis.minorticks_off()
     axis.legend(frameon=False)
     return _saved(figure, path)
