@@ -4,13 +4,18 @@ import json
 
 import pytest
 
+from tailor.tools.figures import learned_reports
 from tailor.tools.main import main
 
 
-def test_models_are_judged_on_random_arguments_and_on_the_executives_choices(tmp_path, capsys):
+def test_models_are_judged_on_random_arguments_and_on_the_executives_choices(tmp_path, capsys, monkeypatch):
+    panels = []
+    monkeypatch.setattr(learned_reports, "scatter", lambda path, predicted, observed: panels.extend(predicted) or path)
     words = ["evaluate", "models", "--domain", "arm", "--episodes", "6", "--on-policy", "letter-I", "--runs", "2"]
-    assert main([*words, "--jobs", "1", "--json", "--store", str(tmp_path)]) == 0
+    (tmp_path / "models.png").write_bytes(b"")
+    assert main([*words, "--jobs", "1", "--json", "--store", str(tmp_path), "--report", str(tmp_path)]) == 0
     random, chosen = json.loads(capsys.readouterr().out)["rows"]
+    assert panels == ["reach", "reach, letter-I"]
     assert (random["chosen_in"], random["episodes"]) == ("", 6)
     assert (chosen["chosen_in"], chosen["action"]) == ("letter-I", "reach")
     assert chosen["episodes"] >= 2
