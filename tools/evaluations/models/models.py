@@ -19,6 +19,7 @@ from tailor.tools.evaluations.models import fresh, model_rows
 from tailor.tools.evaluations.models.model_rows import Row
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.learning.run_gathering import modelled_actions
 
 FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
 REMARKS = (
@@ -44,24 +45,25 @@ def run(arguments: argparse.Namespace) -> int:
         if name not in known:
             raise UsageError(f"--on-policy {name}: no such scenario of {domain}, expected some of {', '.join(known)}")
     made = [{**row, "chosen_in": ""} for row in model_rows.rows(domain, arguments)]
-    made += [row for name in tracked(arguments.on_policy, "scenarios") for row in _chosen(domain, name, arguments)]
+    made += _chosen_rows(domain, arguments)
     model_rows.publish("models", f"Action models: {domain}", made, REMARKS, arguments)
     return 0
 
 
-def _chosen(domain: str, scenario: str, arguments: argparse.Namespace) -> list[Row]:
-    """A row for each action that the scenario's runs finish."""
-    declared = domains.load(domain)
-    zoo = Path(arguments.zoo) if arguments.zoo else models_folder(declared.robot)
-    durations, _ = load_robot(declared.robot, zoo)
+def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
+    """A row for each scenario and each action that its runs finish."""
+    if not arguments.on_policy:
+        return []
+    robot = domains.load(domain).robot
+    durations, _ = load_robot(robot, Path(arguments.zoo) if arguments.zoo else models_folder(robot))
     first = seeds_of(domain, arguments).first
-    seed = FIRST_RUN_SEED + first % RUN_SEEDS
-    runs = (declared.robot, (scenario,), arguments.runs, seed)
-    folder = fresh.chosen(*runs, arguments.zoo, arguments.jobs, arguments.store)
+    seed, where = FIRST_RUN_SEED + first % RUN_SEEDS, (arguments.zoo, arguments.jobs, arguments.store)
     rows = []
-    for name, action in sorted(declared.actions.items()):
-        data = read_data_set(folder / action.duration_model.split("/")[0])
-        if any(episode.finished for episode in data.episodes):
-            columns = model_rows.duration_columns(durations[action.duration_model], data, first)
-            rows.append({"domain": domain, "action": name, "chosen_in": scenario, **columns})
+    for scenario in tracked(arguments.on_policy, "scenarios"):
+        folder = fresh.chosen(robot, (scenario,), arguments.runs, seed, *where)
+        for action in modelled_actions(domain):
+            data = read_data_set(folder / action)
+            if any(episode.finished for episode in data.episodes):
+                columns = model_rows.duration_columns(durations[f"{action}/duration"], data, first)
+                rows.append({"domain": domain, "action": action, "chosen_in": scenario, **columns})
     return rows
