@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from tailor.executive.planning.enumeration import PlanEnumeration
     from tailor.executive.planning.orders.every_order import UndecidedError, validate_every_order
     from tailor.executive.planning.pddl.domain_reader import parse_domain
-    from tailor.executive.planning.pddl.errors import PddlError, Unsupported
     from tailor.executive.planning.pddl.language import Domain, Literal
     from tailor.executive.planning.pddl.problem import Problem
     from tailor.executive.planning.pddl.problem_reader import parse_problem
     from tailor.executive.planning.pddl.problem_text import format_problem
+    from tailor.executive.planning.pddl.syntax.errors import PddlError, Unsupported
     from tailor.executive.planning.plan_quality import quality
     from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Result, Step
     from tailor.executive.planning.plans.portions import PacedWork, Work
@@ -107,7 +107,7 @@ _MODULES = {
     "parse_domain": "pddl.domain_reader",
     "parse_plan": "plans.vhpop_reader",
     "parse_problem": "pddl.problem_reader",
-    "PddlError": "pddl.errors",
+    "PddlError": "pddl.syntax.errors",
     "Plan": "plans.plan",
     "PlanEnumeration": "enumeration",
     "PlanTextError": "plans.vhpop_reader",
@@ -120,7 +120,7 @@ _MODULES = {
     "Step": "plans.plan",
     "suffix": "semantics.suffix",
     "UndecidedError": "orders.every_order",
-    "Unsupported": "pddl.errors",
+    "Unsupported": "pddl.syntax.errors",
     "validate": "semantics.validator",
     "validate_every_order": "orders.every_order",
     "validation": "semantics.validator",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tailor.executive.planning import Domain, Problem, Result
-from tailor.executive.planning.pddl.errors import shortened
+from tailor.executive.planning.pddl.syntax.errors import shortened
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:

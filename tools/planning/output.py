@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 from tailor.executive.planning import Problem, Result, format_links, format_plan
-from tailor.executive.planning.pddl.errors import shortened
+from tailor.executive.planning.pddl.syntax.errors import shortened
 
 
 def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:

@@ -8,9 +8,9 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import BinaryIO
 
-from tailor.executive.planning.pddl.definitions import split_definitions
-from tailor.executive.planning.pddl.errors import error_at, place_of
-from tailor.executive.planning.pddl.s_expressions import MAX_CHARACTERS
+from tailor.executive.planning.pddl.syntax.definitions import split_definitions
+from tailor.executive.planning.pddl.syntax.errors import error_at, place_of
+from tailor.executive.planning.pddl.syntax.s_expressions import MAX_CHARACTERS
 from tailor.schemas.errors import UsageError
 
 MAX_BYTES = 4 * MAX_CHARACTERS

@@ -20,7 +20,7 @@ from tailor.executive.planning.pddl.language import (
     Numeric,
 )
 from tailor.executive.planning.pddl.numeric_reader import read_cost, read_duration
-from tailor.executive.planning.pddl.s_expressions import Form, Node, form_of, name_of, word_of
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, form_of, name_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 NUMERIC_EFFECTS = frozenset({"assign", "increase", "decrease", "scale-up", "scale-down"})

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
 from tailor.executive.planning.pddl.language import And, Definition, Domain, Equal, Formula, Or, Quantified, Typed
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of
 from tailor.executive.planning.pddl.substitution import fresh, size, substituted
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, form_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 MAX_PARTS = 100  # of a definition: each use of the predicate is as long

@@ -9,7 +9,7 @@ from tailor.executive.planning.pddl.action_reader import read_action
 from tailor.executive.planning.pddl.derived_reader import with_derived
 from tailor.executive.planning.pddl.formula_reader import CONNECTIVES, Scope
 from tailor.executive.planning.pddl.language import Domain, Typed
-from tailor.executive.planning.pddl.s_expressions import (
+from tailor.executive.planning.pddl.syntax.s_expressions import (
     Form,
     Node,
     Word,

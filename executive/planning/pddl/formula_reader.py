@@ -19,8 +19,8 @@ from tailor.executive.planning.pddl.language import (
     Typed,
     When,
 )
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Place, form_of, word_of
 from tailor.executive.planning.pddl.substitution import size, substituted
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Place, form_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 MAX_PARTS = 100_000  # of all derived predicates in a text: a sixth of a second

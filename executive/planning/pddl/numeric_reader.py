@@ -8,7 +8,7 @@ from typing import cast
 
 from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_terms
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Numeric, Operation, numbers_in
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, form_of, word_of
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, form_of, word_of
 
 MAX_NUMBERS = 100  # in a duration or a cost, evaluated for every ground action; the domains at hand have 3 at most
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?")

@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
 from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
-from tailor.executive.planning.pddl.s_expressions import read_form
+from tailor.executive.planning.pddl.syntax.s_expressions import read_form
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from tailor.executive.planning.pddl.formula_reader import Scope, expect, read_at
 from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
 from tailor.executive.planning.pddl.numeric_reader import number_of
 from tailor.executive.planning.pddl.problem import Problem, TimedLiteral
-from tailor.executive.planning.pddl.s_expressions import (
+from tailor.executive.planning.pddl.syntax.s_expressions import (
     Form,
     Node,
     Place,

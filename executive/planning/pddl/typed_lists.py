@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tailor.executive.planning.pddl.language import Typed
-from tailor.executive.planning.pddl.s_expressions import Form, Node, Word, name_of, word_of
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, name_of, word_of
 
 ABOVE_ALL = "the type 'object' is above all others and has none above itself"
 MAX_OBJECTS = 10_000  # with the constants

@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.executive.planning import PddlError, parse_domain, parse_problem
-from tailor.executive.planning.pddl.definitions import split_definitions
+from tailor.executive.planning.pddl.syntax.definitions import split_definitions
 
 DOMAIN = """(define (domain d) (:types a b)
  (:predicates (p ?x - a) (r)) (:functions (total-cost))

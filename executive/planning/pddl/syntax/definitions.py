@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from tailor.executive.planning.pddl.errors import PddlError, error_at, place_of
+from tailor.executive.planning.pddl.syntax.errors import PddlError, error_at, place_of
 
 _TOKEN = re.compile(r";[^\n\r]*|[()]|[^\s();]+")
 _HEADS: dict[tuple[str, ...], str] = {("(", "define", "(", kind): kind for kind in ("domain", "problem")}

@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tailor.executive.planning.pddl.errors import LINE_END, PddlError, Unsupported, error_at, place_of, shortened
+from tailor.executive.planning.pddl.syntax.errors import LINE_END, PddlError, Unsupported, error_at, place_of, shortened
 
 MAX_CHARACTERS = 250_000  # read in a tenth of a second; the problems at hand have 10 000 at most
 MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests deeper than 20

@@ -1,0 +1,1 @@
+"""Text to expressions: parentheses and words, their places, errors at a place. Knows no language."""
