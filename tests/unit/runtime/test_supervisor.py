@@ -275,6 +275,7 @@ def test_children_are_stopped_in_reverse_order_and_one_that_ignores_it_is_killed
 def test_the_first_signal_only_requests_a_stop():
     for number in SIGNALS:
         with handlers_kept():
+            signal.signal(number, signal.SIG_DFL)  # the tests may run under nohup
             stop = stop_on_signals()
             assert not stop.requested
             os.kill(os.getpid(), number)

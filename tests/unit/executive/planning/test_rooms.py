@@ -41,7 +41,7 @@ def test_the_documentation_lists_every_file_in_its_room():
     for path in MODULES:
         if path.startswith(PLANNING) and not path.endswith("__init__.py"):
             *room, name = path.removeprefix(PLANNING).removesuffix(".py").split("/")
-            inside["".join(room) or "root"].add(name)
+            inside["/".join(room) or "root"].add(name)
     text = (ROOT / "docs" / "planning.md").read_text().partition("## How the code is laid out")[2].partition("\n## ")[0]
-    rows = re.findall(r"^\| `?(\w+)/?`?: [^|]*\| (.*) \|$", text, re.MULTILINE)
+    rows = re.findall(r"^\| `?([\w/]+?)/?`?: [^|]*\| (.*) \|$", text, re.MULTILINE)
     assert {room: set(re.findall(r"`(\w+)`", files)) for room, files in rows} == inside

@@ -2,8 +2,10 @@
 
 import json
 
+import numpy as np
 import pytest
 
+from tailor.tools.evaluations.models import floors
 from tailor.tools.figures import learned_reports
 from tailor.tools.main import main
 
@@ -32,3 +34,10 @@ def test_the_papers_tables_are_of_random_arguments_alone(name, capsys):
 def test_an_unknown_scenario_is_a_usage_error(capsys):
     assert main(["evaluate", "models", "--domain", "arm", "--on-policy", "chess"]) == 2
     assert "--on-policy chess: no such scenario of arm, expected some of letter-A" in capsys.readouterr().err
+
+
+def test_tasks_without_noise_leave_a_ratio_to_the_floor():
+    off_s, floor_s = np.full(4, 0.1), np.array([0.0, 0.0, 0.0, 0.1])  # a third of the draws have no noise at all
+    ratio, (low, high) = floors._ratio(off_s, floor_s, np.random.default_rng(1))
+    assert ratio == pytest.approx(4.0)
+    assert 1.0 <= low <= high < np.inf
