@@ -76,9 +76,9 @@ def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -
 
 
 def _ratio(off_s: Array, floor_s: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
-    """Ratio of the means over the same tasks, and its 95 % interval."""
+    """Ratio of the means over the same tasks, and its 95 % interval over the resamples in which runs differ at all."""
     drawn = rng.integers(len(off_s), size=(RESAMPLES, len(off_s)))
     off, floor = off_s[drawn].mean(axis=1), floor_s[drawn].mean(axis=1)
-    measured = floor > 0.0  # of a few tasks, all that are drawn may be without noise
+    measured = floor > 0.0  # of a few tasks, all that are drawn may repeat exactly
     low, high = np.percentile(off[measured] / floor[measured], (2.5, 97.5))
     return float(off_s.mean() / floor_s.mean()), (float(low), float(high))
