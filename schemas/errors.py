@@ -13,6 +13,10 @@ class UsageError(Exception):
     """
 
 
+class UnreachableError(UsageError):
+    """What another process provides is not there yet or any more, e.g. the bus: trying again later may help."""
+
+
 @dataclass(frozen=True, slots=True)
 class Rejected:
     """A refused input; a value, never an exception. Decoding refuses with the reasons of `DecodeRefusal`."""

@@ -28,6 +28,9 @@ class Reading:
 class Body(Protocol):
     """A robot in its world. Seed, start and commands determine all states, bit for bit, in every process.
 
+    One that cannot take every finite start value has a method `refusal(values) -> str`: what is wrong with values from
+    outside, empty if nothing is.
+
     Attributes:
       robot: Name of the robot, as in topic keys.
       names: Names of the start values, which `place` takes too.

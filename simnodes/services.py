@@ -103,4 +103,8 @@ class Services:
         unknown = sorted(argument.keys() - set(names))
         if unknown:
             raise ValueError(f"unknown name {', '.join(unknown)[:100]}, expected some of: {', '.join(names)}")
-        return {name: float(value) for name, value in argument.items()}
+        values = {name: float(value) for name, value in argument.items()}
+        refusal = getattr(self._world.body, "refusal", None)
+        if refusal is not None and (refused := refusal(values)):
+            raise ValueError(refused)
+        return values

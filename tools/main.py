@@ -11,9 +11,11 @@ from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
 from tailor import __version__
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
+
+TRY_AGAIN = 75
 
 # command -> (module, one line of help); each module has configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -81,10 +83,12 @@ def main(argv: Sequence[str] | None = None) -> int:
       argv: Arguments without the program name; default: those of the process.
 
     Returns:
-      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted.
+      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted; 75 (EX_TEMPFAIL of sysexits.h) if what
+      another process provides is not there and a supervisor, such as systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(["tailor", *arguments[:1]])
+    is_supervised = "NOTIFY_SOCKET" in os.environ  # a process takes it out
     try:
         try:
             return _run(arguments)
@@ -96,7 +100,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if not extra and isinstance(error, ModuleNotFoundError):
             raise
         _report(f"{plain(name)}: {plain(advice([extra]) if extra else str(error))}")
-        return 2
+        return TRY_AGAIN if is_supervised and isinstance(error, UnreachableError) else 2
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 VELOCITY_MEMORY = 0.8  # weight of the old velocity at a percept: steps of 80 ms, so about 0.4 s
+SHORTEST_S = 0.02  # between two percepts; noise over less would be a fast ball
 GROWTH_M2_PER_S = 4e-4  # a resting ball out of sight: 2 cm after 1 s
 CARRIED_GROWTH_M2_PER_S = 1e-3  # a ball in the grip may slide in it
 MOVING_GROWTH_M2_PER_S = 9e-3  # at 1 m/s; proportional to its speed
@@ -97,7 +98,7 @@ def see(track: BallTrack | None, seen: Seen, phi: float, now_ns: int) -> BallTra
     gain = track.variance / (track.variance + variance)
     d_ahead, d_left = gain * (ahead - track.ahead), gain * (left - track.left)
     elapsed_s = 1e-9 * (now_ns - track.seen_ns)
-    push = (1.0 - VELOCITY_MEMORY) / elapsed_s if elapsed_s > 0.0 else 0.0
+    push = (1.0 - VELOCITY_MEMORY) / max(elapsed_s, SHORTEST_S) if elapsed_s > 0.0 else 0.0
     c, s = math.cos(phi), math.sin(phi)
     return BallTrack(
         track.ahead + d_ahead,

@@ -8,7 +8,7 @@ from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.state import State, Task
+from tailor.executive.core.state import State, Task, undecided
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Reason
@@ -23,6 +23,8 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
       The state after it, and the report of an action that ended in this tick.
     """
     zero = at_rest(context.domain.axes, state.command)
+    if state.carried:
+        return _abandoned(context, state)
     if state.mode is not Mode.EXECUTING:
         return replace(state, command=zero), None
     if state.task.running is None:
@@ -103,6 +105,16 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
     task = replace(after_action(state.task), failures=failures, plan=None, done=frozenset())
     zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks
     return replace(state, task=task, deliberation=None, fault=fault, command=zero, coasted=coasted), finished
+
+
+def _abandoned(context: Context, state: State) -> tuple[State, ActionFinished | None]:
+    """Zero command and nothing decided: all decisions were made for the place from which the robot was carried."""
+    running, zero = state.task.running, at_rest(context.domain.axes, state.command)
+    state = replace(undecided(state), command=zero, coasted=context.settings.coast_ticks)
+    if running is None:
+        return state, None
+    finished = finished_message(context, state, state.task.finished, running, ("failed", Cause(Reason.ROBOT_CARRIED)))
+    return replace(state, task=replace(state.task, finished=state.task.finished + 1)), finished
 
 
 def after_action(task: Task) -> Task:

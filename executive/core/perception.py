@@ -14,8 +14,9 @@ from tailor.executive.core.freshness import (
     with_samples,
 )
 from tailor.executive.core.modes import Conditions, Mode, next_mode
-from tailor.executive.core.state import Arming, Inputs, State, Task
+from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.domain import relocations
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import DriverState
 from tailor.schemas.reason_text import reason_text
@@ -32,11 +33,13 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
     readings = tuple(s for s in samples if s.key in sensors)
     second_ago = now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
+    belief, passed_ns = domain.update(state.belief, now_ns, readings, state.command), now_ns - state.now_ns
     state = replace(
         state,
         tick=state.tick + 1,
         now_ns=now_ns,
-        belief=domain.update(state.belief, now_ns, readings, state.command),
+        belief=belief,
+        carried=relocations(domain, belief) != relocations(domain, state.belief),
         arrivals=newest_arrivals(state.arrivals, samples),
         streams=with_samples(state.streams, readings, now_ns),
         overruns_ns=overruns,
@@ -46,7 +49,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
         state = _with_goal(context, state, inputs.goal)
     if inputs.stopping:
         state = replace(state, task=replace(state.task, active=False, running=None, decision=None), deliberation=None)
-    return _with_mode(context, state, Cause(Reason.CLOCK_BACKWARD) if backward else None)
+    return _paused(_with_mode(context, state, Cause(Reason.CLOCK_BACKWARD) if backward else None), passed_ns)
 
 
 def disarmed(context: Context, state: State) -> Cause | None:
@@ -107,9 +110,17 @@ def _with_mode(context: Context, state: State, clock_fault: Cause | None) -> Sta
             goal_active=state.task.active,
         ),
     )
-    if mode is Mode.DISARMED and state.task.running is not None:
-        state = replace(state, task=replace(state.task, running=None, decision=None, plan=None), deliberation=None)
+    if mode is Mode.DISARMED:
+        state = undecided(state)
     return replace(state, mode=mode, cause=cause)
+
+
+def _paused(state: State, passed_ns: int) -> State:
+    """While the executive holds, the clock of the running action stands still: waiting is no failure of the action."""
+    running = state.task.running
+    if state.mode is not Mode.HOLDING or running is None:
+        return state
+    return replace(state, task=replace(state.task, running=replace(running, started_ns=running.started_ns + passed_ns)))
 
 
 def _hold(context: Context, state: State) -> Cause | None:

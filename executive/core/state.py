@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tailor.executive.core.execution import Running
 from tailor.executive.core.freshness import Stream
@@ -96,8 +96,15 @@ class State:
     deliberation: Deliberation | None = None
     preparation: Preparation | None = None
     ground: GroundCache = field(default_factory=GroundCache)
+    carried: bool = False  # in this tick the belief found that the robot was moved by others
     halted_until_ns: int = 0  # until then the robot brakes, and nothing is decided
     deliberations: int = 0  # number of started ones; seeds their random generators
+
+
+def undecided(state: State) -> State:
+    """The state with its goal only: what comes next is planned and decided from where the robot stands then."""
+    task = replace(state.task, running=None, decision=None, plan=None)
+    return replace(state, task=task, deliberation=None, preparation=None)
 
 
 def initial_state(context: Context) -> State:

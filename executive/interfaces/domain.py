@@ -80,7 +80,8 @@ class Domain(Protocol):
       actions: Executable actions by name.
       executables: Executable name by PDDL action name (lower case).
       axes: Axes of the command. A robot with several command outlets also has an attribute `outlets`, see
-        tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first.
+        tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first. One whose belief
+        notices that the robot was carried to another place has a method `relocations`, see below.
       command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
       sensors: Topics from which the belief is estimated.
       required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.
@@ -164,6 +165,15 @@ class Domain(Protocol):
           stamp_ns: Stamp of the message.
         """
         ...
+
+
+def relocations(domain: Domain, belief: Belief) -> int:
+    """How often the robot was found where it cannot have driven; 0 for a domain without a method of this name.
+
+    Decisions do not outlast a relocation: they were made for the place before.
+    """
+    count = getattr(domain, "relocations", None)
+    return 0 if count is None else int(count(belief))
 
 
 class Conflict(Exception):

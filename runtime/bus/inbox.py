@@ -19,6 +19,7 @@ from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import EStop, Sample
 from tailor.schemas.topics import Topic
 
+MAX_SENDERS = 32  # of a topic, whose newest sequence numbers are remembered
 EVENT_DEPTH = 16  # events and commands may come several in a tick, e.g. two arming requests
 
 
@@ -61,7 +62,7 @@ class Inbox:
         self._subscriptions = [(topic, key, source, encoding_of(topic.type)) for topic, key, source in subscriptions]
         self._now, self._wall, self._newest_only = now, wall, newest_only
         self._previous = Instant(now(), wall())
-        self._last: dict[int, tuple[str, int]] = {}  # (sender, sequence) of the newest message, by subscription
+        self._last: dict[int, dict[str, int]] = {}  # sequence number of each sender's newest message, by subscription
 
     def drain(self, now_ns: int | None = None) -> tuple[Sample, ...]:
         """All new samples, ordered by arrival; no arrival is later than `now_ns` (default: now)."""
@@ -91,13 +92,18 @@ class Inbox:
             return origin
         if origin.sender in complete:
             return None
-        repeated = origin.sequence and self._last.get(number) == (origin.sender, origin.sequence)
+        last = self._last.setdefault(number, {})
+        repeated = origin.sequence and last.get(origin.sender) == origin.sequence
+        if repeated:
+            last[origin.sender] = last.pop(origin.sender)  # a frozen sender is not a silent one
         if repeated and topic.type is not EStop:  # a forged repetition must not take the place of an e-stop
             return Rejected("repeated")  # repeats of a frozen sender are ignored, so its topic becomes stale
         message = decode(topic, raw.payload)
         if isinstance(message, Rejected):
             return message
-        self._last[number] = (origin.sender, origin.sequence)
+        if last.pop(origin.sender, None) is None and len(last) == MAX_SENDERS:
+            del last[next(iter(last))]  # the one that has been silent longest
+        last[origin.sender] = origin.sequence
         arrived = arrival_ns(raw.received_wall_ns, self._previous, now)
         return Sample(key, message, arrived, origin.sequence, origin.sender)
 

@@ -27,8 +27,8 @@ class IngestQueue:
     """Filled by callbacks of zenoh, drained by one reader."""
 
     def __init__(self, max_bytes: int = MAX_BYTES) -> None:
-        self.drops: Counter[str] = Counter()  # messages dropped by this queue, by key
         self.received = 0
+        self._drops: Counter[str] = Counter()
         self._max_bytes = max_bytes
         self._bytes = 0
         self._waiting: deque[Raw] = deque()
@@ -40,10 +40,16 @@ class IngestQueue:
             self.received += 1
             size = memory_of(raw)
             if self._bytes + size > self._max_bytes:
-                count_key(self.drops, raw.key)
+                count_key(self._drops, raw.key)
                 return
             self._bytes += size
             self._waiting.append(raw)
+
+    @property
+    def drops(self) -> Counter[str]:
+        """Messages dropped by this queue so far, by key."""
+        with self._lock:
+            return self._drops.copy()
 
     def drain(self) -> list[Raw]:
         """Remove and return all messages, oldest first."""

@@ -12,7 +12,7 @@ from tailor.runtime.bus.rights.credentials import Identity, Password
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, hosted, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.ros2.profiles import PLAIN, KeyProfile
 from tailor.schemas.services import ROLES, Role
 
@@ -93,7 +93,8 @@ def open_client(
       keys: Key profile of a bus on another machine; on this machine the bus decides.
 
     Raises:
-      UsageError: No router responds within `timeout_s`, or it refuses this user.
+      UnreachableError: No router responds within `timeout_s`.
+      UsageError: The router refuses this user.
     """
     zenoh_config.check_endpoint(connect)
     folder, timeout_ms = run_folder(connect), int(timeout_s * 1000)
@@ -102,8 +103,8 @@ def open_client(
     else:
         config = zenoh_config.client([connect], timeout_ms, identity=identity)
 
-    def explain(_: str) -> str:
-        return f"bus endpoint {connect}: {_why_no_session(connect)}"
+    def explain(_: str) -> UsageError:
+        return _no_session(connect)
 
     with _opened(config, explain, sender, keys, role) as session:
         yield session
@@ -116,20 +117,22 @@ def _local_client(folder: RunFolder, role: Role, timeout_ms: int) -> str:
 
 
 def _router(config: str, listen: str, keys: KeyProfile = PLAIN) -> AbstractContextManager[Session]:
-    def explain(cause: str) -> str:
+    def explain(cause: str) -> UsageError:
         reason = "the port is in use" if "in use" in cause else "cannot listen there"
-        return f"bus endpoint {listen}: {reason}; expected a free one, see --connect"
+        return UsageError(f"bus endpoint {listen}: {reason}; expected a free one, see --connect")
 
     return _opened(config, explain, "", keys, "launcher")
 
 
 @contextmanager
-def _opened(config: str, explain: Callable[[str], str], sender: str, keys: KeyProfile, node: str) -> Iterator[Session]:
+def _opened(
+    config: str, explain: Callable[[str], UsageError], sender: str, keys: KeyProfile, node: str
+) -> Iterator[Session]:
     with ExitStack() as stack:
         try:
             session = stack.enter_context(opened(config, sender, keys, node))
         except CannotOpenError as error:
-            raise UsageError(explain(str(error))) from error
+            raise explain(str(error)) from error
         yield session
 
 
@@ -140,10 +143,11 @@ def _start_threads(client: str) -> None:
     elevate_bus_threads()
 
 
-def _why_no_session(endpoint: str) -> str:
+def _no_session(endpoint: str) -> UsageError:
     host, _, port = endpoint.partition("/")[2].rpartition(":")
     try:
         socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
     except OSError:
-        return "no router responds; start one with `tailor bus`"
-    return "it opens no session here: the bus belongs to another user, or this one has no key for it (`tailor keys`)"
+        return UnreachableError(f"bus endpoint {endpoint}: no router responds; start one with `tailor bus`")
+    why = "the bus belongs to another user, or this one has no key for it (`tailor keys`)"
+    return UsageError(f"bus endpoint {endpoint}: it opens no session here: {why}")

@@ -1,4 +1,4 @@
-"""Runs an external planner such as `vhpop` as a child process: polled without blocking, killed with its group.
+"""Runs an external planner such as `vhpop` as a child process: polled without blocking, killed with its session.
 
 Owns the child, its files and its limits of time, output and memory. Does not parse the plan.
 """
@@ -13,6 +13,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from typing import Literal
 
 from tailor.runtime.planners.named import named_planner
 from tailor.runtime.processes.child import bound_to_parent
+from tailor.runtime.processes.session_end import end_session
 from tailor.schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
@@ -56,15 +58,15 @@ class PlannerProcess:
         max_bytes: int = MAX_OUTPUT_BYTES,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Starts the child as `command DOMAIN PROBLEM` in its own process group.
+        """Starts the child as `command DOMAIN PROBLEM` in a session of its own.
 
         Args:
           command: Program and arguments, quoted as in a shell but run without one: "vhpop -g -f MW-Loc"; or a name:
             "kairos", "kairos:5", "up:pyperplan".
           domain: PDDL text, passed in a file.
           problem: PDDL text, passed in a file.
-          limit_s: Wall time in seconds after which the group is killed; vhpop's own -T has a resolution of minutes.
-          max_bytes: Size of the output after which the group is killed; a poll reads about 64 kB, a full pipe.
+          limit_s: Wall time in seconds after which the session is killed; vhpop's own -T has a resolution of minutes.
+          max_bytes: Size of the output after which the session is killed; a poll reads about 64 kB, a full pipe.
           clock: Monotonic clock in seconds.
 
         Raises:
@@ -128,7 +130,7 @@ class PlannerProcess:
         return self._answer
 
     def kill(self) -> None:
-        """Kills the child's whole group; safe to call again."""
+        """Kills the child's whole session; safe to call again."""
         if self._answer is None:
             self._end("timeout", "the planner was killed")
 
@@ -147,6 +149,8 @@ class PlannerProcess:
     def _end(self, outcome: Outcome, reason: str) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._child.pid, signal.SIGKILL)  # a child that has ended may have left children
+        if outcome in ("timeout", "flood"):  # on a thread that outlives the tick, and is awaited at the end
+            threading.Thread(target=end_session, args=(self._child.pid,), name="planner-end").start()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(_REAP_S)
         assert self._child.stdout is not None

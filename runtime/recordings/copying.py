@@ -14,6 +14,7 @@ from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.runtime.recordings.mcap.writer import CHUNK_BYTES
 from tailor.schemas.errors import UsageError
 
+MAX_CHANNELS = 65_535  # their numbers have 16 bits
 Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
 
 
@@ -44,11 +45,13 @@ class _Copy:
         schema = self.schemas.get(channel.schema_id)
         return channel.metadata.get("key") or channel.topic.strip("/"), "" if schema is None else schema.name
 
-    def write(self, record: Any) -> None:
-        """Copy one message."""
+    def write(self, record: Any) -> bool:
+        """Copy one message; False if the new file has no room for its channel."""
         channel = self.channels[record.channel_id]
         identity = (channel.id, channel.topic, channel.schema_id)
         if identity not in self._new_channels:
+            if len(self._new_channels) == MAX_CHANNELS:
+                return False
             schema = self._schema(self.schemas.get(channel.schema_id))
             self._new_channels[identity] = self.writer.register_channel(
                 channel.topic, channel.message_encoding, schema, channel.metadata
@@ -56,6 +59,7 @@ class _Copy:
         self.writer.add_message(
             self._new_channels[identity], record.log_time, record.data, record.publish_time, record.sequence
         )
+        return True
 
     def _schema(self, schema: Any) -> int:
         if schema is None:
@@ -104,8 +108,7 @@ def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) ->
             copy_.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, r.Message):
             origin = copy_.origin(record)
-            if origin is not None and keep(*origin, record.log_time):
-                copy_.write(record)
+            if origin is not None and keep(*origin, record.log_time) and copy_.write(record):
                 copied.kept += 1
             else:
                 copied.left_out += 1

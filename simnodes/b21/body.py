@@ -97,6 +97,11 @@ class B21Body:
         if values.get("held", 0.0) > 0.0:
             self._take(list(kitchen().cups)[round(values["held"]) - 1], values)
 
+    def refusal(self, values: Mapping[str, float]) -> str:
+        """See Body: only cups that there are can be held."""
+        held, most = values.get("held", 0.0), len(kitchen().cups)
+        return "" if held in range(most + 1) else f"held is {held:g}, expected the number of a cup, 1 to {most}, or 0"
+
     def command(self, values: tuple[float, ...]) -> None:
         """Set-points of base, arm and gripper in the order of driver.toml."""
         self._firmware.accept(values)

@@ -11,6 +11,7 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
 from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
@@ -77,21 +78,28 @@ class HardwareNode:
         """
         self.device.start()
         announced = False
-        while not stopped() and self.device.phase is not Phase.ENDED:
-            self._run_period(self._loop.wait_for_next_period().now_ns)
-            if not announced and not self.driver.unready:
-                notifier.ready()
-                announced = True
-            notifier.alive()
-        notifier.stopping()
-        gave_up = self.device.phase is Phase.ENDED
+        try:
+            while not stopped() and self.device.phase is not Phase.ENDED:
+                self._run_period(self._loop.wait_for_next_period().now_ns)
+                if not announced and not self.driver.unready:
+                    notifier.ready()
+                    announced = True
+                notifier.alive()
+        finally:  # also after a mistake of this program: the robot is not left in motion
+            notifier.stopping()
+            gave_up = self.device.phase is Phase.ENDED
+            self._end(gave_up)
+        return not gave_up
+
+    def _end(self, gave_up: bool) -> None:
         if not gave_up:
             self.driver.guard.disarm(Reason.SHUTDOWN)
             self._hand(self._clock.now_ns())
-        self._publish_state(self._clock.now_ns())
-        if not self.device.end():
-            self._report("the hardware does not end: a call of it still waits")
-        return not gave_up
+        try:
+            self._publish_state(self._clock.now_ns())
+        finally:
+            if not self.device.end():
+                self._report("the hardware does not end: a call of it still waits")
 
     def _run_period(self, now_ns: int) -> None:
         self._sense()
@@ -105,13 +113,20 @@ class HardwareNode:
         for at_ns, readings in self.device.readings():
             wall = wall_ns() - (self._clock.now_ns() - at_ns)
             for name, message in readings.items():
-                fault = self._fault_of(name, message)
+                fault = self._fault_of(name, message) or self._publish(name, message, wall)
                 if fault:
                     self.device.fail(fault)
                     return
-                stamped: Any = message
-                self._publishers[name].publish(stamped if stamped.stamp_ns else replace(stamped, stamp_ns=wall))
                 self._watch.heard(name, at_ns)
+
+    def _publish(self, name: str, message: Any, wall: int) -> str:
+        """Publish a measurement; a fault if its fields hold what no message can, e.g. None where a number belongs."""
+        try:
+            payload = encode(message if message.stamp_ns else replace(message, stamp_ns=wall))
+        except Exception as error:
+            return f"read: {name} cannot be encoded: {type(error).__name__}: {error}"
+        self._publishers[name].publish_encoded(payload)
+        return ""
 
     def _fault_of(self, name: str, message: Message) -> str:
         if name not in self._publishers or name == "driver":

@@ -36,6 +36,7 @@ class LineBelief:
     x: float = 0.0
     seen: bool = False
     shift: float = 0.0  # how far the places have moved, for tests
+    carried: int = 0  # how often the robot was, for tests
 
 
 def slide(state, now_ns, belief, arguments):

@@ -44,6 +44,7 @@ class KitchenBelief:
     held: str = ""  # name of the cup in the gripper
     poses_seen: int = 0
     poses_doubted: int = 0
+    relocated: int = 0  # how often the base was moved by others
 
     @property
     def friction(self) -> Joints:
@@ -119,7 +120,8 @@ def _locate(belief: KitchenBelief, seen: PoseEstimate) -> KitchenBelief:
         return replace(belief, poses_doubted=belief.poses_doubted + 1)
     if not belief.poses_seen or lost:
         pose = Pose(seen.x, seen.y, seen.phi, (x, 0.0, 0.0, y, 0.0, phi))
-        return replace(belief, pose=pose, poses_seen=1, poses_doubted=0)
+        relocated = belief.relocated + (belief.poses_seen > 0)
+        return replace(belief, pose=pose, poses_seen=1, poses_doubted=0, relocated=relocated)
     pose = planar_ekf.correct(belief.pose, seen.x, seen.y, seen.phi, (x, y, phi))
     return replace(belief, pose=pose, poses_seen=belief.poses_seen + 1, poses_doubted=0)
 

@@ -80,6 +80,10 @@ class KitchenDomain:
         """Whether the pose has settled and the arm is known."""
         return believing.ready(belief)
 
+    def relocations(self, belief: KitchenBelief) -> int:
+        """How often the base was moved by others."""
+        return belief.relocated
+
     def belief_values(self, belief: KitchenBelief) -> tuple[float, ...]:
         """Values of `belief_names`; tables and cups not seen yet are where the map has them, last cups are left out."""
         pose = belief.pose

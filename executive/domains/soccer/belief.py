@@ -45,6 +45,7 @@ class SoccerBelief:
     odom: Odometry | None = None  # the last one
     opponents: Opponents = opponents.NONE
     ball2: BallTrack | None = None  # where two balls are in play
+    relocated: int = 0  # how often the robot was moved by others
 
     @property
     def ball_xy(self) -> tuple[float, float] | None:
@@ -152,8 +153,8 @@ def _moved(
     ball = _ball_moved(belief.ball, v, omega, middle, duration_s)
     ball2 = _ball_moved(belief.ball2, v, omega, middle, duration_s)
     v_now, omega_now = (odom.v, odom.omega) if odom is not None else (belief.v, belief.omega)
-    seen, doubted = belief.poses_seen, belief.poses_doubted
-    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, seen, doubted, odom, belief.opponents, ball2)
+    b, counts = belief, (belief.poses_seen, belief.poses_doubted)
+    return SoccerBelief(to_ns, pose, v_now, omega_now, moved_ns, ball, *counts, odom, b.opponents, ball2, b.relocated)
 
 
 def _ball_moved(ball: BallTrack | None, v: float, omega: float, phi: float, duration_s: float) -> BallTrack | None:
@@ -188,7 +189,8 @@ def _locate(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
 def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
     x, y, phi = _variances(seen)
     pose = Pose(seen.x, seen.y, seen.phi, (x, 0.0, 0.0, y, 0.0, phi))
-    return replace(_with_pose(belief, pose, 1, 0), opponents=opponents.NONE)
+    located = _with_pose(belief, pose, 1, 0)
+    return replace(located, opponents=opponents.NONE, relocated=belief.relocated + (belief.poses_seen > 0))
 
 
 def _variances(seen: PoseEstimate) -> tuple[float, float, float]:
@@ -202,7 +204,8 @@ def _bounded(variance: float) -> float:
 
 def _with_pose(belief: SoccerBelief, pose: Pose, seen: int, doubted: int) -> SoccerBelief:
     b = belief
-    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, b.odom, b.opponents, b.ball2)
+    rest = b.odom, b.opponents, b.ball2, b.relocated
+    return SoccerBelief(b.time_ns, pose, b.v, b.omega, b.moved_ns, b.ball, seen, doubted, *rest)
 
 
 def _see_ball(belief: SoccerBelief, seen: BallPercept, second: bool) -> SoccerBelief:
@@ -212,7 +215,8 @@ def _see_ball(belief: SoccerBelief, seen: BallPercept, second: bool) -> SoccerBe
     else:
         ball = ball_track.see(ball, _sight(seen), b.pose.phi, b.time_ns)
     counts = b.poses_seen, b.poses_doubted  # the constructor is five times faster than dataclasses.replace
-    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, *counts, b.odom, b.opponents, ball2)
+    rest = b.odom, b.opponents, ball2, b.relocated
+    return SoccerBelief(b.time_ns, b.pose, b.v, b.omega, b.moved_ns, ball, *counts, *rest)
 
 
 def _sight(seen: BallPercept) -> Seen:

@@ -60,6 +60,10 @@ class SoccerDomain:
         """Whether the pose has settled, the ball was looked for long enough, and opponents were looked for lately."""
         return believing.ready(belief)
 
+    def relocations(self, belief: SoccerBelief) -> int:
+        """How often the robot was moved by others."""
+        return belief.relocated
+
     def belief_values(self, belief: SoccerBelief) -> tuple[float, ...]:
         """Values of `belief_names`, those of opponents and of a second ball once there are any.
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from heapq import nlargest, nsmallest
 from typing import Any
 
 import numpy as np
 
-from tailor.executive.belief.obstacle_tracks import ObstacleTrack, Sighting, confirmed, in_map
+from tailor.executive.belief.obstacle_tracks import CONFIRMED, ObstacleTrack, Sighting, confirmed, in_map
 from tailor.executive.belief.obstacle_tracks import see as see_obstacles
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer.pictures import Pictures, in_view, shown_after, with_picture
@@ -16,6 +17,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages.soccer import OpponentPercept, OpponentPercepts
 
 MOST = 4  # of another team, that telemetry includes
+KEPT = 24  # tracks, and percepts of a picture: more are no robots, and comparing all pairs takes time
 FRESH_S = 0.5  # six pictures: without them the robot does not drive among opponents
 CREDIBLE_M = 20.0  # a percept farther off is none
 VARIANCES = (1e-6, 25.0)  # m²: a millimetre's, and that of 5 m; senders without a covariance send zeros
@@ -49,8 +51,12 @@ def see(opponents: Opponents, pose: Pose, now_ns: int, percepts: OpponentPercept
         return in_view((pose.x, pose.y, pose.phi), (track.x, track.y))
 
     near = [percept for percept in percepts.opponents if math.hypot(percept.x, percept.y) < CREDIBLE_M]
+    if len(near) > KEPT:
+        near = nsmallest(KEPT, near, key=lambda percept: math.hypot(percept.x, percept.y))
     sightings = [in_map(pose, _sighting(percept)) for percept in near]
     tracks = see_obstacles(opponents.tracks, sightings, now_ns, expected)
+    if len(tracks) > KEPT:
+        tracks = tuple(nlargest(KEPT, tracks, key=lambda track: (track.seen >= CONFIRMED, track.seen_ns)))
     return Opponents(tracks, now_ns, with_picture(opponents.pictures, pose))
 
 

@@ -40,7 +40,12 @@ _KINDS: dict[int, Any] = {
     Opcode.METADATA: r.Metadata,
     Opcode.CHUNK: r.Chunk,
 }
-DAMAGE = (McapError, struct.error, ValueError, zstandard.ZstdError, RuntimeError, zlib.error, EOFError)
+# An impossible length inside a record overflows, or takes more memory than there is.
+DAMAGE = (
+    *(McapError, struct.error, ValueError, zstandard.ZstdError, RuntimeError, zlib.error, EOFError),
+    *(OverflowError, MemoryError),
+)
+MOST_REASONS = 3  # that a report names
 
 
 @dataclass(slots=True)
@@ -51,21 +56,22 @@ class DamageReport:
     damaged_chunks: int = 0
     lost_bytes: int = 0  # in damaged records, or after the last valid record
     complete: bool = False  # the file ends with a footer
-    reasons: list[str] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)  # the first ones
 
     def text(self) -> str:
         """Summary in one line; empty for an undamaged file."""
         if self.complete and not self.damaged_chunks and not self.lost_bytes:
             return ""
         footer = "" if self.complete else "no footer; "
-        reasons = f" ({'; '.join(self.reasons[:3])})" if self.reasons else ""
+        reasons = f" ({'; '.join(self.reasons)})" if self.reasons else ""
         chunks = f"{self.chunks} chunks intact, {self.damaged_chunks} damaged"
         return f"{footer}{chunks}, {self.lost_bytes} bytes lost{reasons}"
 
     def add_loss(self, size: int, reason: str) -> None:
         """Record that `size` bytes were lost."""
         self.lost_bytes += size
-        self.reasons.append(reason)
+        if len(self.reasons) < MOST_REASONS:
+            self.reasons.append(reason)
 
 
 def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator[Any]:
@@ -73,7 +79,7 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
 
     Args:
       path: The file.
-      account: Filled in; complete when the iterator is exhausted.
+      damage: Filled in; complete when the iterator is exhausted.
       with_chunks: False skips all messages, which is fast.
 
     Raises:

@@ -81,6 +81,25 @@ time.sleep(60)"""
 
 
 @pytest.mark.promise("P8")
+def test_what_a_wrapper_started_in_a_group_of_its_own_is_killed_as_well(tmp_path):
+    """`timeout` is such a wrapper."""
+    body = """
+grandchild = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"], process_group=0)
+print(";pid", grandchild.pid, flush=True)
+time.sleep(60)"""
+    limits = iter((1.5, 6.0, 24.0))
+
+    def started():
+        _, answer = run_without_blocking(program(tmp_path, body), next(limits))
+        _, pid = answer.output.split()
+        return answer, int(pid)
+
+    answer, pid = repeat_on_stall(3, started)
+    assert answer.outcome == "timeout"
+    assert gone(pid)
+
+
+@pytest.mark.promise("P8")
 def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
     body = "import signal\nfor s in (2, 15, 1): signal.signal(s, signal.SIG_IGN)\ntime.sleep(60)"
     child, answer, _ = run(program(tmp_path, body), limit_s=0.5)

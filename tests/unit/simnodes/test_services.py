@@ -85,5 +85,22 @@ def test_services_refuse_senseless_requests(name, text):
     assert (resets, services.steps_due) == ([], 0)
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("place", '{"x": 7}'),
+        ("reset", '{"start": {"x": 7}}'),
+        ("reset", '{"start": {}, "events": [{"at_s": 1, "x": 7}]}'),
+    ],
+)
+def test_services_refuse_what_the_body_cannot_take(name, text, monkeypatch):
+    refuse = lambda self, values: "x is 7, expected less" if values.get("x") == 7 else ""  # noqa: E731
+    monkeypatch.setattr(FakeBody, "refusal", refuse, raising=False)
+    services, reply, resets = call(name, text)
+    assert (reply, resets) == ((False, f"{name}: x is 7, expected less"), [])
+    assert services._world.body.state["x"] == 2.0
+    assert call("place", '{"x": 3}')[1] == (True, "placed")
+
+
 def test_stepping_needs_a_pause():
     assert call("step", "1")[1] == (False, "step: pause first")

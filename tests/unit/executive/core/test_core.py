@@ -344,6 +344,37 @@ def test_after_a_stop_planning_starts_again_from_the_robots_place():
     assert run[-1][0].task.result == "achieved"
 
 
+@pytest.mark.promise("P6")
+def test_a_decision_that_no_action_has_begun_yet_does_not_outlast_a_stop():
+    """A person carries the robot meanwhile: what was decided for the old place is not driven from the new one."""
+    first = next(n for n, (state, _, _) in enumerate(drive(line_context())) if state.task.decision is not None) + 1
+
+    def world(n, given, x):
+        at = x if n <= first else x + 0.8
+        return Inputs(
+            (odometry(n * TICK, at, n), driver(n * TICK, "stopped" if first < n < 10 else "armed")), given.goal
+        )
+
+    run = list(drive(line_context(), goal="(visited b)", world=world))
+    assert run[first - 1][0].task.decision is not None
+    assert run[first - 1][0].task.running is None
+    assert all(state.task.decision is None and state.deliberation is None for state, _, _ in run[first:9])
+    begun = next(state.task.running for state, _, _ in run[first:] if state.task.running is not None)
+    assert begun.parameters[0] == pytest.approx(0.8)
+
+
+@pytest.mark.promise("P6")
+def test_time_in_which_the_executive_holds_is_no_time_of_the_action():
+    def world(n, given, x):
+        return Inputs(tuple(s for s in given.samples if not s.key.endswith("odom"))) if 8 <= n < 160 else given
+
+    run = list(drive(line_context(), world=world, ticks=220))
+    finished = messages(run, ActionFinished)
+    assert [f.outcome for f in finished] == ["done", "done"]
+    assert finished[0].actual_s < 2.5
+    assert run[-1][0].task.result == "achieved"
+
+
 def test_arming_is_requested_again_only_while_the_same_start_of_the_driver_stays_silent():
     def world(n, given, x):
         state = driver(n * TICK, "disarmed", 7 if n < 14 else 8, accepted=0)

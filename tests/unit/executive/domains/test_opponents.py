@@ -88,6 +88,20 @@ def test_an_opponent_moved_aside_is_a_new_track_with_the_number_free_for_it():
     assert moved.standing[0].y == pytest.approx(ahead((1.5, 0.9))[0][1], abs=0.15)
 
 
+def test_a_flood_of_phantoms_costs_no_time_and_pushes_no_opponent_out():
+    known = looked(ahead((1.5, 0.0)), 10, lost=0.0)
+    rng, now_ns = np.random.default_rng(1), known.seen_ns
+    for _ in range(50):
+        now_ns += PICTURE_NS // 8
+        places = rng.uniform(-15.0, 15.0, (80, 2))
+        flood = tuple(OpponentPercept(*place, 0.2, 1e-6, 1e-6, 0.0) for place in places if math.hypot(*place) > 5.0)
+        seen = seen_from(POSE, ahead((1.5, 0.0)), rng, lost=0.0)
+        known = opponents.see(known, POSE, now_ns, OpponentPercepts(0, (*flood, *seen)))
+        assert len(known.tracks) <= opponents.KEPT
+    (x, y), near = ahead((1.5, 0.0))[0], known.standing[0]
+    assert math.hypot(near.x - x, near.y - y) < 0.15
+
+
 def test_without_pictures_the_robot_waits_once_it_knows_of_opponents():
     believed = replace(soccer.unknown(), poses_seen=99, time_ns=10**9)
     assert soccer.ready(believed), "nobody told it of opponents"

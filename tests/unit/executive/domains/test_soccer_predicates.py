@@ -11,7 +11,7 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer import robot
-from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
+from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario, relocations
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.soccer import BallPercept
@@ -108,6 +108,9 @@ def heard(message, arrival_ns):
     return Sample("", message, arrival_ns, 1)
 
 
+BALL_AHEAD = heard(BallPercept(1_000_000, 2.0, 0.0, 1e-2, 1e-2, 0.0), 1_000_000)
+
+
 def after(*samples, belief=None, now_ns=None):
     last = max(s.arrival_ns for s in samples)
     return SOCCER.update(belief or SOCCER.initial_belief(), now_ns or last, samples, (0.0, 0.0))
@@ -158,6 +161,16 @@ def test_outliers_are_doubted_and_a_moved_robot_is_believed_after_three():
     thrice = after(*(pose_at(2.0, 1.0, 0.0, (20 + i) * 100_000_000) for i in range(3)), belief=belief)
     assert (thrice.pose.x, thrice.pose.y) == (2.0, 1.0)
     assert not SOCCER.ready(thrice), "it settles first"
+    assert [relocations(SOCCER, each) for each in (SOCCER.initial_belief(), belief, twice, thrice)] == [0, 0, 0, 1]
+    later = after(pose_at(2.0, 1.0, 0.0, 2_400_000_000), BALL_AHEAD, belief=thrice, now_ns=2_500_000_000)
+    assert relocations(SOCCER, later) == 1
+
+
+def test_two_percepts_within_a_millisecond_make_no_fast_ball():
+    belief = after(pose_at(0.0, 0.0, 0.0, 1), BALL_AHEAD)
+    nearer = heard(BallPercept(1_000_000, 1.95, 0.0, 1e-2, 1e-2, 0.0), BALL_AHEAD.arrival_ns + 100_000)
+    ball = after(nearer, belief=belief).ball
+    assert math.hypot(ball.vx, ball.vy) < 1.0
 
 
 def test_ball_is_kept_in_the_field_while_the_robot_looks_away():

@@ -2,6 +2,7 @@
 
 import pytest
 
+from tailor.runtime.bus import inbox as module
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, pack, unpack
 from tailor.runtime.bus.encoding import encoding_of
@@ -94,6 +95,18 @@ def test_repeated_messages_of_a_frozen_sensor_are_rejected_but_not_those_of_a_re
     box = Inbox([(TOPICS["odom"], "agilo/odom", line)], now=lambda: 0, wall=lambda: 0)
     assert [sample.sequence for sample in box.drain(9)] == [7, 8, 3, 3]
     assert box.rejected == {("agilo/odom", "repeated"): 3}
+
+
+@pytest.mark.promise("P6")
+def test_a_frozen_sensor_stays_rejected_beside_other_senders_of_its_topic():
+    line = Line()
+    box = Inbox([(TOPICS["odom"], "agilo/odom", line)], now=lambda: 0, wall=lambda: 0)
+    frozen, came = numbered(ODOMETRY, 7), []
+    for stranger in range(100):
+        line.raws.extend((frozen, numbered(ODOMETRY, stranger + 1, sender=f"{stranger:032x}")))
+        came += [sample.sequence for sample in box.drain(9) if sample.sender == SENDER]
+    assert came == [7]
+    assert len(box._last[0]) == module.MAX_SENDERS
 
 
 def test_a_frozen_sensor_without_numbers_is_accepted():  # a ROS 2 bridge sends none

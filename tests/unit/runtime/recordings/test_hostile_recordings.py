@@ -10,6 +10,7 @@ from mcap.writer import Writer
 
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.recordings import copying
 from tailor.runtime.recordings.mcap.scan import MAGIC
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection
@@ -79,7 +80,7 @@ def test_a_recording_without_order_lasts_from_its_earliest_message_and_is_cut_an
     assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 3
 
 
-@pytest.mark.parametrize("damage", ["length", "opcode", "hole"])
+@pytest.mark.parametrize("damage", ["length", "opcode", "hole", "size of a chunk"])
 def test_messages_after_a_damaged_record_are_recovered(tmp_path, damage):
     data = bytearray(write_tape(tmp_path / "a.mcap").read_bytes())
     start, end = list(chunk_bounds(data))[1]
@@ -87,12 +88,31 @@ def test_messages_after_a_damaged_record_are_recovered(tmp_path, damage):
         data[start - 2] = 0x7F
     elif damage == "opcode":
         data[start - 9] = 0
+    elif damage == "size of a chunk":
+        (name_bytes,) = struct.unpack_from("<I", data, start + 28)
+        data[start + 32 + name_bytes + 7] ^= 0x80  # one bit: 2^63 bytes more
     else:
         data[start - 9 : end] = bytes(end - start + 9)
     (tmp_path / "bad.mcap").write_bytes(data)
     recording = open_recording(tmp_path / "bad.mcap")
     assert [m.sequence for m in recording.messages()] == [*range(1, 11), *range(21, 51)]
     assert "bytes lost" in recording.damage.text()
+
+
+def test_a_copy_of_more_channels_than_a_file_may_have_leaves_messages_out(tmp_path, monkeypatch):
+    monkeypatch.setattr(copying, "MAX_CHANNELS", 2)
+    foreign(tmp_path / "a.mcap", rows=[(10 * k, f"topic{k}") for k in range(9)])
+    copied = copying.copy(tmp_path / "a.mcap", tmp_path / "b.mcap", lambda *_: True, {})
+    assert (copied.kept, copied.left_out) == (2, 7)
+    assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 2
+
+
+def test_the_report_of_a_file_of_nothing_but_damage_stays_small(tmp_path):
+    with (tmp_path / "bad.mcap").open("wb") as file:
+        file.write(MAGIC + struct.pack("<BQ2s", 0x03, 2, b"xx") * 10_000)
+    recording = open_recording(tmp_path / "bad.mcap")
+    assert list(recording.messages()) == []
+    assert len(recording.damage.reasons) == 3
 
 
 @pytest.mark.parametrize("opcode", [0x03, 0x06, 0x0C])

@@ -140,7 +140,7 @@ def test_counts_that_change_for_hours_are_noted_every_ten_seconds_only(tmp_path)
     queue = IngestQueue()
     recorder = Recorder(tmp_path / "r.mcap", queue, Selection(), Limits(), RecordingMetadata("1", 0))
     for step in range(600):
-        queue.drops["some/key"] += 1
+        queue._drops["some/key"] += 1
         recorder.step(step * S // 10)
     recorder.close()
     notes = [entries for name, entries in open_recording(tmp_path / "r.mcap").metadata() if name == "drops"]

@@ -172,3 +172,8 @@ def test_a_cup_starts_in_the_gripper_of_any_arm():
     rest(body, 0.5)
     assert seen_from(body.ground_truth(), "cup1")[:2] == pytest.approx((0.8, 0.1), abs=0.005)
     assert body.ground_truth().angles != pytest.approx(HOME)
+
+
+@pytest.mark.parametrize(("held", "refused"), [(0.0, False), (1.0, False), (0.4, True), (99.0, True), (-1.0, True)])
+def test_only_cups_that_there_are_can_be_held(held, refused):
+    assert bool(of_profile("paper").refusal({"held": held})) is refused

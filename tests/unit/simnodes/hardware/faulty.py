@@ -3,7 +3,9 @@
 import threading
 from collections import Counter
 
+from tailor.schemas.codec import decode
 from tailor.schemas.messages import Odometry
+from tailor.schemas.topics import TOPICS
 from tailor.simnodes.hardware.interface import Hardware
 
 
@@ -59,9 +61,10 @@ class Bus:
         return tuple(waiting)
 
     def publisher(self, name, robot):
-        return Published(self.published.setdefault(name, []))
+        return Published(TOPICS[name], self.published.setdefault(name, []))
 
 
-class Published(list):
-    def __init__(self, messages):
+class Published:
+    def __init__(self, topic, messages):
         self.publish = messages.append
+        self.publish_encoded = lambda payload: messages.append(decode(topic, payload))

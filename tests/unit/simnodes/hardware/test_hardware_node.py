@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from tailor.runtime.clock import MonotonicClock
-from tailor.schemas.messages import ArmRequest, EStop, PoseEstimate, Sample, VelocityCommand
+from tailor.schemas.messages import ArmRequest, EStop, Odometry, PoseEstimate, Sample, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
 from tailor.simnodes.guard import ArmRefusal, Limit
 from tailor.simnodes.hardware.node import HardwareNode
@@ -186,6 +186,29 @@ def test_a_measurement_of_another_type_is_a_fault(robot):
     driven.drive()
     driven.hardware.odometry = {"odom": PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)}
     stopped_for(driven, "odom is no Odometry")
+
+
+@pytest.mark.parametrize(
+    "odometry",
+    [Odometry(0, None, 0.0, 0.0, 0.0, 0.0), Odometry(1.76e18, 0.0, 0.0, 0.0, 0.0, 0.0), Odometry(2**62, *[0.0] * 5)],
+)
+def test_a_measurement_that_cannot_be_encoded_is_a_fault(robot, odometry):
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = {"odom": odometry}
+    stopped_for(driven, "read: odom cannot be encoded")
+    driven.hardware.odometry = {}
+    driven.drive()
+
+
+def test_a_mistake_of_the_driver_itself_leaves_the_robot_at_rest_and_its_device_closed(robot, monkeypatch):
+    driven = robot()
+    driven.drive()
+    monkeypatch.setattr(threading, "excepthook", lambda _: None)
+    monkeypatch.setattr(driven.node, "_judge", lambda now_ns: 1 / 0)
+    driven.thread.join(5)
+    assert driven.hardware.written[-1] == (0.0, 0.0)
+    assert driven.hardware.order[-1] == "close"
 
 
 def test_an_estop_stops_the_hardware_and_stays_latched_through_a_fault(robot):
