@@ -27,7 +27,7 @@ from tailor.tools.evaluations.arm.letter_figures import (
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import Comparison, compare, compare_means
-from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.evaluations.seeds import Seeds, seeds_of
 from tailor.tools.figures.letters import draw_letters
 
 DOMAINS = ("arm",)
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if refined letters are faster than all others that were written."""
     seeds = seeds_of("arm", arguments)
     modes = (*LEARNED, PERFECT_GREEDY, *(() if arguments.no_oracle else ORACLES))
-    keys = [(letter, seed) for seed in seeds.starts(arguments.seeds) for letter in sorted(font())]
+    keys = keys_of(seeds, arguments.seeds)
     found = measure_letters(modes, keys, arguments.zoo, arguments.jobs)
     rows = rows_of(found)
     plots = {} if arguments.report is None else _picture(arguments.report, seeds.first, arguments.zoo)
@@ -63,6 +63,12 @@ def run(arguments: argparse.Namespace) -> int:
     refined = next(row for row in rows if row["mode"] == REFINED.name)
     intervals = [refined[name] for name in refined if name.endswith("_ci95") or name == "ci95"]
     return 0 if all(low > 0 for low, _ in intervals) else 1
+
+
+def keys_of(seeds: Seeds, each: int) -> list[Key]:
+    """Letters with starts of their own: a start decides on the temperature, and one of all letters would be one unit."""
+    letters = sorted(font())
+    return [(letters[k % len(letters)], seed) for k, seed in enumerate(seeds.starts(each * len(letters)))]
 
 
 def rows_of(found: Found) -> list[dict[str, Any]]:

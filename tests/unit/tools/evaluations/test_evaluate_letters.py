@@ -1,5 +1,6 @@
 """The letters' evaluation: its oracle knows what a reach takes, and its rows are over letters."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -8,12 +9,14 @@ import pytest
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import REACH
 from tailor.executive.domains.arm.belief import ArmBelief
+from tailor.executive.domains.arm.letters import font
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.tools.evaluations.arm import letters
 from tailor.tools.evaluations.arm.letter_figures import Figures
 from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import FRICTION, PerfectReach
 from tailor.tools.evaluations.costs import Costs
+from tailor.tools.evaluations.seeds import Seeds
 
 
 def test_the_oracle_predicts_what_the_controller_plans():
@@ -88,3 +91,10 @@ def test_perfect_greedy_is_at_least_as_fast_to_the_first_waypoint_as_stopping_th
     chosen = _best(body, leg, [(0.0, 0.0), (0.6, 0.3), (-0.6, -0.3)])
     assert chosen == (0.6, 0.3)
     assert sum(_durations(body, leg, chosen, [])) < sum(_durations(body, leg, (0.0, 0.0), []))
+
+
+def test_no_two_letters_have_the_same_start():
+    """A start decides on the temperature of the gears: one for all letters would be one unit, not 26."""
+    keys = letters.keys_of(Seeds(1000, {}), 3)
+    assert Counter(letter for letter, _ in keys) == dict.fromkeys(font(), 3)
+    assert sorted(seed for _, seed in keys) == list(range(1000, 1000 + 3 * len(font())))
