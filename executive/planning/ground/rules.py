@@ -6,12 +6,12 @@ is one more. Only static and positive conjuncts are read: all other conditions a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tailor.executive.planning.ground.bindings import conjuncts_of, is_static
 from tailor.executive.planning.ground.ground_formula import StaticWorld
-from tailor.executive.planning.pddl.language import Action, Atom, Condition, Effect, Equal, Formula, Not, Typed
+from tailor.executive.planning.pddl.language import Action, Atom, Condition, Formula, Typed
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +35,8 @@ def rules_of(action: Action, world: StaticWorld) -> Iterator[Rule]:
     yield _rule(action, action.parameters, literals, plain, True)
     for effect in added:
         if effect.condition or effect.variables:
-            renamed = {v.name: f"{v.name}'" for v in effect.variables}  # it may hide a parameter
-            variables = tuple(Typed(renamed[v.name], v.types) for v in effect.variables)
-            more = tuple(_substituted(part, renamed) for part in _usable(effect.condition, own, world))
-            yield _rule(action, action.parameters + variables, literals + more, (_head(effect, renamed),), False)
+            more = tuple(_usable(effect.condition, own, world))
+            yield _rule(action, action.parameters + effect.variables, literals + more, (effect.atom,), False)
 
 
 def _usable(conditions: tuple[Condition, ...], own: set[str], world: StaticWorld) -> Iterator[Formula]:
@@ -57,20 +55,3 @@ def _rule(
     parts = dict.fromkeys(literals)
     body = tuple(part for part in parts if isinstance(part, Atom))
     return Rule(action.name, variables, body, tuple(p for p in parts if not isinstance(p, Atom)), head, whole)
-
-
-def _head(effect: Effect, names: Mapping[str, str]) -> Atom:
-    return Atom(effect.atom.predicate, tuple(names.get(term, term) for term in effect.atom.terms))
-
-
-def _substituted(formula: Formula, names: Mapping[str, str]) -> Formula:
-    """A literal or equality with other names of its variables."""
-    match formula:
-        case Not(part):
-            return Not(_substituted(part, names))
-        case Equal(left, right):
-            return Equal(names.get(left, left), names.get(right, right))
-        case Atom(predicate, terms):
-            return Atom(predicate, tuple(names.get(term, term) for term in terms))
-        case _:
-            return formula

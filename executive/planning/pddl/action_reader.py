@@ -18,12 +18,15 @@ from tailor.executive.planning.pddl.language import (
     DurationBound,
     Effect,
     Numeric,
+    Typed,
 )
 from tailor.executive.planning.pddl.numeric_reader import read_cost, read_duration
+from tailor.executive.planning.pddl.substitution import substituted
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, form_of, name_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 NUMERIC_EFFECTS = frozenset({"assign", "increase", "decrease", "scale-up", "scale-down"})
+UNREADABLE = ";"  # begins a comment, so no name of a text contains it
 MAX_PARAMETERS = 100  # binding them is recursive; the competition problems at hand have 9 at most
 _PARTS = {
     ":action": (":parameters", ":precondition", ":effect"),
@@ -105,7 +108,20 @@ def _forall(form: Form, scope: Scope, durative: bool) -> tuple[Effect, ...]:
     expect(form, 2)
     variables = variables_of(form_of(form.items[1], "a list of variables"), scope.domain.types)
     inner = _effects(form.items[2], scope.extended(variables), durative)
+    hiding = frozenset(variable.name for variable in variables if variable.name in scope.terms)
+    if hiding:  # a condition around the effect may read what they hide, and is joined to its own
+        return tuple(_renamed(effect, variables, hiding) for effect in inner)
     return tuple(replace(effect, variables=variables + effect.variables) for effect in inner)
+
+
+def _renamed(effect: Effect, variables: tuple[Typed, ...], hiding: frozenset[str]) -> Effect:
+    """The effect for all choices of the variables, with names for the hiding ones that no text contains."""
+    marks = 1 + max((variable.name.count(UNREADABLE) for variable in effect.variables), default=0)
+    terms = {name: name + UNREADABLE * marks for name in hiding}
+    named = tuple(replace(variable, name=terms.get(variable.name, variable.name)) for variable in variables)
+    atom = replace(effect.atom, terms=tuple(terms.get(term, term) for term in effect.atom.terms))
+    condition = tuple(replace(part, formula=substituted(part.formula, terms)) for part in effect.condition)
+    return replace(effect, atom=atom, variables=named + effect.variables, condition=condition)
 
 
 def _when(form: Form, scope: Scope, durative: bool) -> tuple[Effect, ...]:

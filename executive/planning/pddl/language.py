@@ -135,7 +135,10 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """One literal that an action makes true, for all choices of `variables` for which `condition` holds."""
+    """One literal that an action makes true, for all choices of `variables` for which `condition` holds.
+
+    No variable hides a parameter or another variable: the reader renames those that do.
+    """
 
     atom: Atom
     positive: bool

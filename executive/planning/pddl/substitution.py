@@ -12,7 +12,7 @@ def substituted(formula: Formula, terms: Mapping[str, str]) -> Formula:
     """The formula with a term for each free variable; bound ones are renamed where they would capture such a term.
 
     Args:
-      formula: Its free variables are keys of `terms`.
+      formula: Its free variables are keys of `terms`, unless these name terms that it does not contain.
       terms: By variable, the term that replaces it.
     """
     match formula:
