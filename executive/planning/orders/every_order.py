@@ -12,7 +12,7 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.semantics.regression import NotClassical
 from tailor.executive.planning.semantics.state import Objects, State, holds
-from tailor.executive.planning.semantics.validator import Unsound, bind_step
+from tailor.executive.planning.semantics.step_check import Unsound, bind_step
 
 MAX_STATES = 20_000  # of walking through all orders: about a second
 

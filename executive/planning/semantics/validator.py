@@ -9,17 +9,11 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Plan, Step
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.semantics.action_effects import affected
-from tailor.executive.planning.semantics.durations import allowed_durations
 from tailor.executive.planning.semantics.happenings import Event, happenings
+from tailor.executive.planning.semantics.interference import reads
 from tailor.executive.planning.semantics.link_check import Bound, faulty_link
-from tailor.executive.planning.semantics.state import Binding, Objects, State, conditions_at, holds
-
-SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
-SLACK_S = 1e-7  # of a float
-
-
-class Unsound(Exception):
-    """The reason why a plan is unsound."""
+from tailor.executive.planning.semantics.state import Objects, State, conditions_at, holds
+from tailor.executive.planning.semantics.step_check import Unsound, bind_step, check_duration
 
 
 def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
@@ -31,8 +25,8 @@ def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
       problem: Initial state, timed literals and goal.
 
     Returns:
-      "" if the plan is sound, else the first fault: an unknown action, a wrong duration, a condition that does not
-      hold, two events that interfere, a goal that is not reached, or an unsound causal link.
+      "" if the plan is sound, else the first fault: an unknown action, a wrong duration, no cost, a condition that does
+      not hold, two events that interfere, a goal that is not reached, or an unsound causal link.
     """
     return completed_work(validation(plan, domain, Objects(problem)))
 
@@ -50,37 +44,6 @@ def validation(plan: Plan, domain: Domain, objects: Objects) -> Work[str]:
     return (yield from faulty_link(plan, objects, bound))
 
 
-# --- the actions ---------------------------------------------------------------------------------
-def bind_step(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding]:
-    """The action schema and binding of a step.
-
-    Raises:
-      Unsound: No such action, or other arguments than it takes.
-    """
-    name, *arguments = step.action
-    action = next((action for action in domain.actions if action.name == name), None)
-    if action is None:
-        raise Unsound(f"step {step.id}: the domain has no action '{name}'")
-    if len(arguments) != len(action.parameters):
-        raise Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
-    for parameter, argument in zip(action.parameters, arguments, strict=True):
-        if argument not in objects.of(parameter):
-            raise Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
-    binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
-    return action, binding
-
-
-def _check_duration(step: Step, action: Action, binding: Binding, objects: Objects, tick_s: float) -> None:
-    if action.duration is None:
-        return
-    allowed = allowed_durations(action.duration, binding, objects.problem.values)
-    if allowed is None:
-        raise Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
-    slack_s = SLACK_TICKS * tick_s + SLACK_S
-    if not allowed[0] - slack_s <= step.duration <= allowed[1] + slack_s:
-        raise Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
-
-
 # --- the simulation ------------------------------------------------------------------------------
 def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Work[State]:
     """The state after the last event; one portion for the events of one time.
@@ -94,11 +57,11 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
         starting = [event.step for event in events if event.step and event.step.id not in bound]
         for step in starting:
             bound[step.id] = bind_step(step, domain, objects)
-            _check_duration(step, *bound[step.id], objects, plan.tick_s)
+            check_duration(step, *bound[step.id], objects, plan)
         _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
         changes = [(event, *_changes(event, state, began, objects, bound)) for event in events]
-        _check_interference(changes, state, objects, bound)
+        _check_interference(changes, objects, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
         state = (state - removed) | added
@@ -161,20 +124,19 @@ def _changes(
 _Change = tuple[Event, frozenset[Fact], frozenset[Fact]]
 
 
-def _check_interference(changes: list[_Change], state: State, objects: Objects, bound: Bound) -> None:
-    """Raises if simultaneous events contradict each other or undo each other's conditions (no moving targets).
-
-    The conditions of an event must hold after each other event alone, and after all others.
-    Source: Fox & Long, PDDL 2.1, JAIR 20 (2003).
-    """
-    if len(changes) == 1:
-        return
-    for other, more, less in changes:
-        others = [change for change in changes if change[0] is not other]
-        for event, added, removed in others:
-            if added & less or removed & more or _unmet(other, (state - removed) | added, objects, bound):
+def _check_interference(changes: list[_Change], objects: Objects, bound: Bound) -> None:
+    """Raises if simultaneous events contradict each other, or one changes what another reads (no moving targets)."""
+    for event, added, removed in changes if len(changes) > 1 else ():
+        changed = added | removed
+        for other, more, less in changes:
+            if other is event or not changed:
+                continue
+            if added & less or removed & more or _is_read(other, changed, objects, bound):
                 raise Unsound(f"{event.label} disturbs {other.label} at the same time")
-        all_removed = frozenset[Fact]().union(*(removed for _, _, removed in others))
-        all_added = frozenset[Fact]().union(*(added for _, added, _ in others))
-        if _unmet(other, (state - all_removed) | all_added, objects, bound):
-            raise Unsound(f"what happens at the same time disturbs {other.label}")
+
+
+def _is_read(event: Event, facts: frozenset[Fact], objects: Objects, bound: Bound) -> bool:
+    if event.step is None:
+        return False
+    action, binding = bound[event.step.id]
+    return reads(action, _moments(event, action), binding, facts, objects)

@@ -106,9 +106,10 @@ DARK = "(define (problem p) (:domain lamp) (:init (on)) (:goal (and (dim) (off))
 
 
 def test_what_lasts_no_time_needs_nothing_afterwards():
-    domain, problem = read(LAMP.replace("{}", "(= ?duration 0)"), DARK)
+    lamp = LAMP.replace("{}", "(= ?duration 0)")
     plan = parse_plan(";p\n1:(look)[0]\n2:(hide)[1]\n")
-    assert validate(plan, domain, problem) == ""
+    assert validate(plan, *read(lamp.replace("(at start (on))", ""), DARK)) == ""
+    assert "disturbs" in validate(plan, *read(lamp, DARK))  # its end reads what its start adds at the same time
 
 
 def test_what_may_take_time_takes_a_tick():
@@ -125,7 +126,12 @@ def test_making_true_what_is_true_disturbs_nobody():
     assert validate(plan, domain, problem) == ""
 
 
-def test_a_disjunction_that_another_way_still_meets_is_not_disturbed():
+def test_an_event_that_adds_what_another_reads_disturbs_it_even_if_it_holds():
+    domain, problem = read(LAMP.replace("{}", "(= ?duration 1)"), DARK)
+    assert "disturbs" in validate(parse_plan(";p\n1:(look)[1]\n2:(look)[1]\n4:(hide)[1]\n"), domain, problem)
+
+
+def test_a_disjunction_is_disturbed_though_another_way_still_meets_it():
     domain, problem = read(
         """(define (domain pair) (:requirements :adl :durative-actions) (:predicates (p) (q) (a) (b) (c))
           (:durative-action take :duration (= ?duration 1) :effect (and (at start (not (p))) (at end (a))))
@@ -134,8 +140,8 @@ def test_a_disjunction_that_another_way_still_meets_is_not_disturbed():
             :condition (at start (or (p) (q))) :effect (at end (c))))""",
         "(define (problem p) (:domain pair) (:init (p) (q)) (:goal (c)))",
     )
-    assert validate(parse_plan(";p\n1:(take)[1]\n1:(look)[1]\n"), domain, problem) == ""
-    assert "disturbs" in validate(parse_plan(";p\n1:(take)[1]\n1:(drop)[1]\n1:(look)[1]\n"), domain, problem)
+    assert "disturbs" in validate(parse_plan(";p\n1:(take)[1]\n1:(look)[1]\n"), domain, problem)
+    assert validate(parse_plan(";p\n1:(take)[1]\n1.01:(look)[1]\n"), domain, problem) == ""
 
 
 # --- what is left of a plan ----------------------------------------------------------------------

@@ -1,0 +1,80 @@
+"""Whether a formula reads facts that another event changes: simultaneous events must not (no moving targets).
+
+Source: Fox & Long, PDDL 2.1, JAIR 20 (2003): neither event changes an atom of the other's conditions, whatever these
+conditions evaluate to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.pddl.language import (
+    Action,
+    And,
+    Atom,
+    Condition,
+    Equal,
+    Formula,
+    Not,
+    Or,
+    Quantified,
+    Typed,
+)
+from tailor.executive.planning.semantics.state import Binding, Objects
+
+Terms = Mapping[str, str | Typed]  # by name: an object, or a variable that stands for all objects of its types
+
+
+def reads(action: Action, moments: tuple[str, ...], binding: Binding, facts: frozenset[Fact], objects: Objects) -> bool:
+    """Whether an action reads one of the facts at some moments, in its conditions or those of its effects.
+
+    Args:
+      action: Action schema.
+      moments: Moments of the action that one event covers.
+      binding: Objects of its parameters.
+      facts: Facts that are changed.
+      objects: Objects of the problem.
+    """
+    if _any_reads(action.conditions, moments, binding, facts, objects):
+        return True
+    return any(
+        _any_reads(effect.condition, moments, {**binding, **{v.name: v for v in effect.variables}}, facts, objects)
+        for effect in action.effects
+    )
+
+
+def _any_reads(
+    conditions: Iterable[Condition], moments: tuple[str, ...], terms: Terms, facts: frozenset[Fact], objects: Objects
+) -> bool:
+    return any(_reads(part.formula, terms, facts, objects) for part in conditions if part.when in moments)
+
+
+def _reads(formula: Formula, terms: Terms, facts: frozenset[Fact], objects: Objects) -> bool:
+    match formula:
+        case Atom():
+            return any(_names(formula, terms, fact, objects) for fact in facts)
+        case Equal():
+            return False
+        case Not(part):
+            return _reads(part, terms, facts, objects)
+        case And(parts) | Or(parts):
+            return any(_reads(part, terms, facts, objects) for part in parts)
+        case Quantified(_, variables, part):
+            return _reads(part, {**terms, **{v.name: v for v in variables}}, facts, objects)
+
+
+def _names(atom: Atom, terms: Terms, fact: Fact, objects: Objects) -> bool:
+    """Whether a fact is the atom for some choice of the variables that stand for several objects."""
+    if atom.predicate != fact[0]:
+        return False
+    chosen: dict[str, str] = {}
+    for name, actual in zip(atom.terms, fact[1:], strict=True):
+        term = terms.get(name, name)
+        if isinstance(term, Typed):
+            fits = actual in objects.of(term) and chosen.setdefault(name, actual) == actual
+        else:
+            fits = term == actual
+        if not fits:
+            return False
+    return True

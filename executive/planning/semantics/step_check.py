@@ -1,0 +1,47 @@
+"""Checks a step by itself: its action, arguments and duration."""
+
+from __future__ import annotations
+
+from tailor.executive.planning.pddl.formula_text import format_atom
+from tailor.executive.planning.pddl.language import Action, Domain
+from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.semantics.durations import allowed_durations
+from tailor.executive.planning.semantics.state import Binding, Objects
+
+SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
+SLACK_S = 1e-7  # of a float
+
+
+class Unsound(Exception):
+    """The reason why a plan is unsound."""
+
+
+def bind_step(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Binding]:
+    """The action schema and binding of a step.
+
+    Raises:
+      Unsound: No such action, or other arguments than it takes.
+    """
+    name, *arguments = step.action
+    action = next((action for action in domain.actions if action.name == name), None)
+    if action is None:
+        raise Unsound(f"step {step.id}: the domain has no action '{name}'")
+    if len(arguments) != len(action.parameters):
+        raise Unsound(f"step {step.id}: '{name}' takes {len(action.parameters)} arguments, not {len(arguments)}")
+    for parameter, argument in zip(action.parameters, arguments, strict=True):
+        if argument not in objects.of(parameter):
+            raise Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
+    binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
+    return action, binding
+
+
+def check_duration(step: Step, action: Action, binding: Binding, objects: Objects, plan: Plan) -> None:
+    """Raises Unsound unless a step of the plan may last as long as it does."""
+    if action.duration is None:
+        return
+    allowed = allowed_durations(action.duration, binding, objects.problem.values)
+    if allowed is None:
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
+    slack_s = SLACK_TICKS * plan.tick_s + SLACK_S
+    if not allowed[0] - slack_s <= step.duration <= allowed[1] + slack_s:
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")
