@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
@@ -35,7 +35,7 @@ class _Draft:
     problem: str = ""
     initial: tuple[Fact, ...] = ()
     plain: list[Step] = field(default_factory=list)
-    durations: int = 0
+    instant: set[int] = field(default_factory=set)  # steps in the plain form without a duration
     actions: dict[int, Fact] = field(default_factory=dict)
     links: list[Link] = field(default_factory=list)
     orderings: list[tuple[int, int]] = field(default_factory=list)
@@ -53,8 +53,8 @@ def parse_plan(text: str) -> Plan:
 
     The plain form, and the competitions' lines `(action args)` or `START: (action args) [DURATION]`, have no initial
     state, links or orderings; their steps are numbered in their order, and their tick is 0.01 s or the last digit
-    printed. Start times and durations of a durative causal-link form are those of the printed bounds, in ticks of
-    0.01 s unless the text has a line "tolerance = ...".
+    printed. In a list with durations, steps without one take no time. Start times and durations of a durative
+    causal-link form are those of the printed bounds, in ticks of 0.01 s unless the text has a line "tolerance = ...".
 
     Args:
       text: One of the forms; "Initial  :" and the paper's "Initial 0 :" are both accepted.
@@ -79,9 +79,7 @@ def parse_plan(text: str) -> Plan:
     if draft.has_goal:
         return _from_links(draft)
     if draft.plain:
-        durative = draft.durations > 0
-        tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS)) if durative else DEFAULT_TICK_S
-        return Plan(draft.problem, (), tuple(draft.plain), durative=durative, tick_s=tick_s)
+        return _from_plain(draft)
     raise PlanTextError("plan text: expected steps such as '1:(action args)' or a part 'Goal     :'; there is no plan")
 
 
@@ -122,15 +120,19 @@ def _read_step(line: str, draft: _Draft) -> None:
             raise ValueError("a causal link before any step")
         draft.links.append(Link(_whole(match[1]), _literal(match[2]), draft.consumer))
     elif match := _PLAIN.fullmatch(line):
-        duration = _number(match[3]) if match[3] else 1.0
         draft.decimals = max(draft.decimals, *(len((text or "").partition(".")[2]) for text in (match[1], match[3])))
-        draft.durations += match[3] is not None
-        draft.plain.append(Step(len(draft.plain) + 1, _fact(match[2]), _number(match[1]), duration))
+        _enter(_fact(match[2]), _number(match[1]), match[3], draft)
     elif _FACT.fullmatch(line) and draft.consumer is None:
-        number = len(draft.plain) + 1
-        draft.plain.append(Step(number, _fact(line), float(number)))
+        _enter(_fact(line), len(draft.plain) + 1.0, None, draft)
     else:
         raise ValueError(f"expected a step, a causal link or a part's name, found '{line[:60]}'")
+
+
+def _enter(action: Fact, start: float, duration: str | None, draft: _Draft) -> None:
+    number = len(draft.plain) + 1
+    if duration is None:
+        draft.instant.add(number)
+    draft.plain.append(Step(number, action, start, 1.0 if duration is None else _number(duration)))
 
 
 def _whole(text: str) -> int:
@@ -165,6 +167,16 @@ def _fact(text: str) -> Fact:
 def _literal(text: str) -> Literal:
     negated = re.fullmatch(r"\(not\s+(\(.*\))\s*\)", text)
     return Literal(_fact(negated[1]), positive=False) if negated else Literal(_fact(text))
+
+
+# --- the plain form ------------------------------------------------------------------------------
+def _from_plain(draft: _Draft) -> Plan:
+    """The plan; where some steps have a duration, those without take no time."""
+    if len(draft.instant) == len(draft.plain):
+        return Plan(draft.problem, (), tuple(draft.plain))
+    steps = tuple(replace(step, duration=0.0) if step.id in draft.instant else step for step in draft.plain)
+    tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS))
+    return Plan(draft.problem, (), steps, durative=True, tick_s=tick_s)
 
 
 # --- the causal-link form ------------------------------------------------------------------------

@@ -58,9 +58,9 @@ def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, objects: 
     One portion for each step of a durative plan, else for each link.
     """
     pairs: list[tuple[int, int]] = []
-    if plan.durative:  # the schedule as it stands
+    if plan.durative:  # the schedule as it stands; simultaneous steps that take no time have no order
         for a in plan.steps:
-            pairs += [(a.id, b.id) for b in plan.steps if a.start + a.duration <= b.start]
+            pairs += [(a.id, b.id) for b in plan.steps if a.start < b.start and a.start + a.duration <= b.start]
             yield
         return pairs
     order = {0: -1, GOAL: len(plan.steps), **{step.id: n for n, step in enumerate(plan.steps)}}

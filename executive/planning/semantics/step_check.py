@@ -39,6 +39,8 @@ def check_duration(step: Step, action: Action, binding: Binding, objects: Object
     """Raises Unsound unless a step of the plan may last as long as it does."""
     if action.duration is None:
         return
+    if not plan.durative:
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} takes time, but the plan has no durations")
     allowed = allowed_durations(action.duration, binding, objects.problem.values)
     if allowed is None:
         raise Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")

@@ -8,11 +8,13 @@ from tailor.executive.planning import (
     Literal,
     PlanTextError,
     Settings,
+    completed,
     format_links,
     format_plan,
     parse_plan,
+    validate,
 )
-from tests.support.planning_problems import OWN, own, printed, solve
+from tests.support.planning_problems import OWN, own, printed, read, solve
 
 FIGURE_10 = """Initial 0 : (robot pos1) (ball pos2) (final pos3)
 
@@ -99,3 +101,35 @@ def test_the_competitions_timed_form_is_a_plan():
     plan = parse_plan("0.001: (navigate dock table1) [2.5]\n2.502: (grip cup1 table1) [1.0]\n")
     assert [(step.start, step.duration) for step in plan.steps] == [(0.001, 2.5), (2.502, 1.0)]
     assert plan.durative
+
+
+INSTANT = """(define (domain d) (:requirements :durative-actions) (:predicates (p) (q) (g))
+  (:durative-action a :parameters () :duration (= ?duration 1) :condition {} :effect (at end (p)))
+  (:action b :parameters () :precondition (p) :effect (q))
+  (:durative-action c :parameters () :duration (= ?duration 1) :condition (at start (q)) :effect (at end (g))))"""
+DONE = "(define (problem x) (:domain d) (:init) (:goal (g)))"
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("0: (a) [1]\n1.01: (b)\n1.02: (c) [1]", ""),
+        ("0: (a) [1]\n0.5: (b)\n2: (c) [1]", "step 2: (b) lacks a condition at its start"),
+        ("0: (a)\n1.01: (b)\n1.02: (c) [1]", "step 1: (a) cannot last 0.0 s"),
+        ("0: (a)\n1.01: (b)\n1.02: (c)", "step 1: (a) takes time, but the plan has no durations"),
+        ("(a)\n(b)\n(c)", "step 1: (a) takes time, but the plan has no durations"),
+    ],
+)
+def test_steps_without_a_duration_take_no_time(text, fault):
+    assert validate(parse_plan(text), *read(INSTANT.format("()"), DONE)) == fault
+
+
+def test_conditions_are_not_skipped_for_want_of_durations():
+    domain, problem = read(INSTANT.format("(and (at start (g)) (over all (q)))"), DONE.replace("(g)", "(p)"))
+    assert "takes time" in validate(parse_plan("0.0: (a)"), domain, problem)
+
+
+def test_simultaneous_steps_that_take_no_time_have_no_order():
+    domain, problem = read(INSTANT.format("()"), DONE.replace("(:init)", "(:init (p))"))
+    linked = completed(parse_plan("1: (b)\n1: (b)\n2: (c) [1]"), domain, problem)
+    assert linked.orderings == ((1, 3), (2, 3))
