@@ -52,7 +52,7 @@ EFFECTS = joined(
     st.one_of(
         EFFECT,
         EFFECT,
-        st.builds("(when {} (at end {}))".format, timed(EVERY, formulas(LITERAL)), LITERAL),
+        st.builds("(when {} (at end {}))".format, timed(EVERY[::2], formulas(LITERAL)), LITERAL),
         st.builds("(forall (?y) (when (at start {}) (at start {})))".format, LITERAL, LITERAL),
         st.builds(
             "(when (and {} {}) (at end {}))".format, timed(EVERY[:1], LITERAL), timed(EVERY[2:], LITERAL), LITERAL

@@ -128,9 +128,12 @@ def _when(form: Form, scope: Scope, durative: bool) -> tuple[Effect, ...]:
     expect(form, 2)
     given = form.items[1]
     condition = read_timed(given, scope) if durative else (Condition(read_formula(given, scope)),)
+    moments = {part.when for part in condition} if durative else set()
+    if "over" in moments:
+        raise form.place.unsupported("an effect under a condition over all")
     inner = _effects(form.items[2], scope, durative)
-    if durative and any(effect.when == "start" for effect in inner) and any(c.when != "start" for c in condition):
-        raise form.place.unsupported("an effect at start under a condition over all or at end")
+    if "end" in moments and any(effect.when == "start" for effect in inner):
+        raise form.place.unsupported("an effect at start under a condition at end")
     return tuple(replace(effect, condition=condition + effect.condition) for effect in inner)
 
 

@@ -137,7 +137,7 @@ class Condition:
 class Effect:
     """One literal that an action makes true, for all choices of `variables` for which `condition` holds.
 
-    No variable hides a parameter or another variable: the reader renames those that do.
+    No variable hides a parameter or another variable: the reader renames those that do. No condition is over all.
     """
 
     atom: Atom

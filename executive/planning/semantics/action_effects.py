@@ -38,8 +38,7 @@ def affected(
 ) -> Iterator[Fact]:
     """The facts that an effect makes true or false in a state.
 
-    Its conditions at start are evaluated in `began`, the state before the action, if given; conditions over all only
-    in the state of the effect.
+    Its conditions at start are evaluated in `began`, the state before the action, if given. It has none over all.
     """
     before = state if began is None else began
     for inner in objects.bindings(effect.variables, binding):

@@ -290,7 +290,18 @@ def domain_with(part):
         (
             "(:durative-action a :duration (= ?duration 1) :effect (when (at end (p)) (at start (p))))",
             "4:56",
-            "an effect at start under a condition over all or at end",
+            "an effect at start under a condition at end",
+        ),
+        (
+            "(:durative-action a :duration (= ?duration 1) :effect (when (over all (p)) (at end (q a))))",
+            "4:56",
+            "an effect under a condition over all",
+        ),
+        (
+            "(:durative-action a :duration (= ?duration 1)"
+            " :effect (when (and (at start (p)) (over all (p))) (at end (p))))",
+            "4:56",
+            "an effect under a condition over all",
         ),
     ],
 )
