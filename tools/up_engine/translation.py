@@ -15,6 +15,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning import Domain, Plan, Problem, Step, Unsupported, parse_domain, parse_problem
 
 DEFAULT_TICK_S = 0.01
+EXACT_TICK_S = 1e-6  # of plans to validate: their times are fractions, not rounded to ticks
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +90,7 @@ class Translation:
 
     def _plan(self, steps: Iterable[Step], orderings: Iterable[tuple[int, int]]) -> Plan:
         problem = self.problem
-        return Plan(problem.name, problem.initial, tuple(steps), (), tuple(orderings), self.timed, (), self.tick_s)
+        return Plan(problem.name, problem.initial, tuple(steps), (), tuple(orderings), self.timed, (), EXACT_TICK_S)
 
     def _instance(self, action: Fact) -> ActionInstance:
         name, *labels = (self.writer.get_item_named(label) for label in action)
