@@ -41,7 +41,6 @@ class AnytimeSearch:
         self._first = Search(domain, problem, replace(settings, rankings=rankings), self._cache)
         self._second: BestFirst[Any] | None = None
         self._work = self._run()
-        self.ground = settings.ground
         self.measure: Measure = measure_of(problem)
         self.best: Result | None = None  # the best plan so far, or why there is none
         self.value = float("inf")  # of the best plan by the measure
@@ -85,10 +84,11 @@ class AnytimeSearch:
     def _improvements(self) -> Iterator[Result | None]:
         """Better and better plans; sets `ended` before the last yield."""
         settings = replace(self._settings, rankings=self._rankings(), search="A")
+        if self.measure == "cost":
+            settings = replace(settings, action_cost="metric")
         grounded = self._cache.last
         assert grounded is not None
-        cost = "metric" if self.measure == "cost" else settings.action_cost
-        task: GroundTask = yield from make_task(self._problem, grounded, cost)
+        task: GroundTask = yield from make_task(self._problem, grounded, settings.action_cost)
         engine = BestFirst[Any](plan_space(task, grounded, settings, RandomSource(settings.seed)), settings)
         engine.goes_on, engine.is_hopeless = True, _Bound(self, task).is_hopeless
         self._second = engine
@@ -126,7 +126,7 @@ class _Bound:
     def _least(self, plan: Refinable) -> float:
         match self.search.measure:
             case "cost":
-                return plan.cost if self.search.ground else 0.0  # with variables all steps count as one
+                return plan.cost
             case "makespan":
                 latest = plan.orderings.earliest()[GOAL]
                 return self.task.grid.seconds(latest) if self.task.temporal else latest - 1

@@ -119,10 +119,10 @@ class _Course:
         settings, metric = self._settings, self._problem.metric
         if settings.rankings or not metric or settings.search != "A":
             return self._searching(task, grounded, settings, rng)
-        eager = task
+        eager, by_metric = task, replace(settings, rankings=rankings_for(settings, metric))
         if metric == "cost" and settings.action_cost == "unit":
             eager = yield from make_task(self._problem, grounded, "metric")
-        by_metric = replace(settings, rankings=rankings_for(settings, metric))
+            by_metric = replace(by_metric, action_cost="metric")
         first = self._searching(eager, grounded, by_metric, rng)
         second = self._searching(task, grounded, replace(settings, rankings=DEFAULT_RANKINGS), rng)
         return Portfolio(first, second, HEAD_START, share=1)

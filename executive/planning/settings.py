@@ -35,7 +35,7 @@ class Settings:
       ground: Plan with ground actions; False: with variables (lifted).
       weight: Weight of the heuristic against the cost of the steps, finite and at least 0.
       action_cost: Cost of a step: 1, its duration in seconds, its duration relative to the shortest action, or what it
-        adds to (total-cost); with variables the last is 1.
+        adds to (total-cost).
       node_limit: Maximum number of generated plans, and of evaluated states.
       step_limit: Maximum number of steps in a plan.
       engine: Partial-order search ("pocl"), search through states ("forward": no durations, disjunctions or

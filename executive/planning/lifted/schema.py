@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import TimeGrid, duration_range, numeric_steps, range_ns
+from tailor.executive.planning.ground.durations import TimeGrid, duration_range, evaluate, numeric_steps, range_ns
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -22,8 +22,8 @@ from tailor.executive.planning.structures.random_source import RandomSource
 class Schema:
     """An action schema; its parameters are renamed ?v1, ?v2, ... over the whole domain, as VHPOP prints them.
 
-    An action whose duration depends on parameters gives one schema per choice of objects for these parameters, which
-    are then `fixed`. Durations are in units of the time grid; `longest` is None without an upper limit.
+    An action whose duration or cost depends on parameters gives one schema per choice of objects for these parameters,
+    which are then `fixed`. Durations are in units of the time grid; `longest` is None without an upper limit.
     """
 
     name: str
@@ -36,13 +36,14 @@ class Schema:
     shortest: int
     longest: int | None
     duration_s: float  # shortest duration
+    cost: float  # by which it increases the total cost
 
 
 def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple[Schema, ...]:
     """The domain's schemata by name.
 
     Raises:
-      TooMuchToGround: "forall", or durations that depend on parameters, exceed the limit of formulas.
+      TooMuchToGround: "forall", or durations and costs that depend on parameters, exceed the limit of formulas.
     """
     parameters = itertools.count(1)
     renamed = [
@@ -64,7 +65,7 @@ def shuffled(schema: Schema, rng: RandomSource) -> Schema:
 def _schemata(
     action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, grid: TimeGrid
 ) -> Iterator[Schema]:
-    """The schemata of one action: one per choice of the parameters that its duration depends on."""
+    """The schemata of one action: one per choice of the parameters that its duration and cost depend on."""
     durative = world.temporal
     spanned: list[tuple[LiftedFormula, Span]] = []
     for condition in action.conditions:
@@ -77,7 +78,7 @@ def _schemata(
     equalities = tuple(part for part, _ in spanned if isinstance(part, Equality))
     effects = lifted_effects(action, names, conditions, lifter, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
-    for fixed, bounds in _durations(action, lifter, world):
+    for fixed, bounds, cost in _choices(action, lifter, world):
         duration = grid.duration(range_ns(bounds))
         if duration is None:
             continue  # ground actions fit the grid: this one is never applicable
@@ -91,22 +92,26 @@ def _schemata(
             effects,
             *duration,
             float(bounds[0]),
+            float(cost),
         )
 
 
-def _durations(
+def _choices(
     action: Action, lifter: Lifter, world: StaticWorld
-) -> Iterator[tuple[Mapping[str, str], tuple[Fraction, Fraction | float]]]:
-    """Choices of the parameters that the duration depends on, with shortest and longest duration in seconds."""
-    if action.duration is None:
-        yield {}, (Fraction(0), Fraction(0))
+) -> Iterator[tuple[Mapping[str, str], tuple[Fraction, Fraction | float], Fraction]]:
+    """Choices of the parameters that duration and cost depend on, with shortest and longest duration in s, and cost."""
+    zero = Fraction(0)
+    if action.duration is None and action.cost is None:
+        yield {}, (zero, zero), zero
         return
-    relevant = {term for bound in action.duration for term in _terms(bound.value)}
+    numbers = [*(bound.value for bound in action.duration or ()), *([] if action.cost is None else [action.cost])]
+    relevant = {term for number in numbers for term in _terms(number)}
     parameters = tuple(p for p in action.parameters if p.name in relevant)
     for fixed in lifter.choices(parameters, {}, 1 + numeric_steps(action)):
-        durations = duration_range(action.duration, fixed, world)
-        if durations is not None:
-            yield fixed, durations
+        durations = (zero, zero) if action.duration is None else duration_range(action.duration, fixed, world)
+        cost = zero if action.cost is None else evaluate(action.cost, fixed, world)
+        if durations is not None and cost is not None:
+            yield fixed, durations, cost
 
 
 def _terms(number: Numeric) -> Iterator[str]:

@@ -120,7 +120,7 @@ def lifted_task(
     """The lifted task of a problem; with `rng`, conditions are in random order.
 
     Raises:
-      TooMuchToGround: Universal quantifiers or durations exceed the limit of formulas.
+      TooMuchToGround: Universal quantifiers, durations or costs exceed the limit of formulas.
     """
     problem, limit = ground.problem, GroundingLimit(MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
@@ -166,9 +166,11 @@ def _achievers(schemas: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achi
 
 
 def _costs(schemas: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:
-    """The cost of each schema: 1 (also by the metric), its duration in seconds, or that relative to the shortest."""
+    """The cost of each schema: 1, its duration in seconds, that relative to the shortest, or the metric's."""
+    if kind == "metric":
+        return {schema: schema.cost for schema in schemas}
     durations = {schema: schema.duration_s or 1.0 for schema in schemas}
-    if kind in ("unit", "metric") or not durations:
+    if kind == "unit" or not durations:
         return dict.fromkeys(durations, 1.0)
     unit = min(durations.values()) if kind == "relative" else 1.0
     return {schema: duration / unit for schema, duration in durations.items()}
