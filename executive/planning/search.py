@@ -13,6 +13,7 @@ from tailor.executive.planning.forward_engine import ForwardEngine
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
 from tailor.executive.planning.ground.grounding import GroundActions, ground_actions, shuffled, static_world
+from tailor.executive.planning.ground.instances import NegativeCost
 from tailor.executive.planning.ground_space import GroundSpace
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
@@ -97,6 +98,8 @@ class _Course:
             yield from self._engine.run()
         except TooMuchToGround as reason:
             yield Result("limit", None, str(reason), *self.counts)
+        except NegativeCost as found:
+            yield Result("unsupported", None, f"{found} is not supported: it is below 0", *self.counts)
 
     def _make_engine(self, grounded: GroundActions, rng: RandomSource) -> Generator[None, None, Engine]:
         """The engine of the settings."""

@@ -162,6 +162,8 @@ def _status(result: Result, task: Translation, limits: Limits) -> PlanGeneration
         return Status.SOLVED_SATISFICING
     if result.status == "unsolvable":
         return Status.UNSOLVABLE_INCOMPLETELY if task.timed else Status.UNSOLVABLE_PROVEN
+    if result.status == "unsupported":
+        return Status.UNSUPPORTED_PROBLEM
     if "memory" in limits.reason:
         return Status.MEMOUT
     return Status.TIMEOUT if limits.reason else Status.UNSOLVABLE_INCOMPLETELY

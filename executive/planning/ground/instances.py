@@ -25,6 +25,7 @@ from tailor.executive.planning.ground.ground_formula import (
     ground,
     negation,
 )
+from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 from tailor.executive.planning.pddl.language import Action, Condition, When
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
@@ -33,15 +34,27 @@ _INSTANT = (_ZERO, _ZERO)
 MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
 
 
+class NegativeCost(Exception):
+    """An action has a cost below 0; the message names both."""
+
+
 def instance(
     number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable
 ) -> GroundAction | None:
-    """The ground action of a complete binding, its durations in ns; None if never applicable or without effect."""
+    """The ground action of a complete binding, its durations in ns; None if never applicable or without effect.
+
+    Raises:
+      NegativeCost: Its cost is below 0.
+      TooMuchToGround: A limit is exceeded.
+    """
     bounds = _INSTANT if schema.duration is None else duration_range(schema.duration, binding, world)
     conditions = _conditions(schema.conditions, binding, world, facts)
     cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
-    if bounds is None or conditions is None or cost is None or cost < 0:
+    if bounds is None or conditions is None or cost is None:
         return None
+    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
+    if cost < 0:
+        raise NegativeCost(f"the cost {format_number(float(cost))} of {format_atom(name)}")
     if max(bounds[0], cost) > MAX_NUMBER:
         raise TooMuchToGround(f"the duration or the cost of '{schema.name}' is above {MAX_NUMBER:g}")
     stated = _effects(schema, binding, world, facts)
@@ -50,7 +63,6 @@ def instance(
     effects, restored = _without_restored(useful, stated)
     if not effects:
         return None
-    name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
     return GroundAction(
         number,
         name,

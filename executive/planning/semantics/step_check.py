@@ -1,11 +1,11 @@
-"""Checks a step by itself: its action, arguments and duration."""
+"""Checks a step by itself: its action, arguments, cost and duration."""
 
 from __future__ import annotations
 
 from tailor.executive.planning.pddl.formula_text import format_atom
-from tailor.executive.planning.pddl.language import Action, Domain
+from tailor.executive.planning.pddl.language import Action, Domain, Numeric
 from tailor.executive.planning.plans.plan import Plan, Step
-from tailor.executive.planning.semantics.durations import allowed_durations
+from tailor.executive.planning.semantics.durations import allowed_durations, evaluated
 from tailor.executive.planning.semantics.state import Binding, Objects
 
 SLACK_TICKS = 0.51  # of a duration: other planners print whole ticks
@@ -20,7 +20,7 @@ def bind_step(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Bin
     """The action schema and binding of a step.
 
     Raises:
-      Unsound: No such action, or other arguments than it takes.
+      Unsound: No such action, other arguments than it takes, or no cost for them.
     """
     name, *arguments = step.action
     action = next((action for action in domain.actions if action.name == name), None)
@@ -32,7 +32,16 @@ def bind_step(step: Step, domain: Domain, objects: Objects) -> tuple[Action, Bin
         if argument not in objects.of(parameter):
             raise Unsound(f"step {step.id}: '{argument}' is no {' or '.join(parameter.types)}")
     binding = {p.name: a for p, a in zip(action.parameters, arguments, strict=True)}
+    if action.cost is not None and not _has_cost(action.cost, binding, objects):
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} has no cost of at least 0")
     return action, binding
+
+
+def _has_cost(cost: Numeric, binding: Binding, objects: Objects) -> bool:
+    try:
+        return evaluated(cost, binding, objects.problem.values) >= 0
+    except (KeyError, ZeroDivisionError):
+        return False
 
 
 def check_duration(step: Step, action: Action, binding: Binding, objects: Objects, plan: Plan) -> None:

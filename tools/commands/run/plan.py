@@ -36,7 +36,7 @@ configure = options.configure
 
 
 def run(args: argparse.Namespace) -> int:
-    """Plans and prints; returns exit code 0 with a plan, 1 without."""
+    """Plans and prints; returns exit code 0 with a plan, 1 without, 2 if the problem is not supported."""
     refuse_ignored(args)
     started = time.process_time()
     try:
@@ -54,7 +54,9 @@ def run(args: argparse.Namespace) -> int:
     if args.verbose:
         print(f"generated {result.generated}, visited {result.visited}, {cpu_ms:.1f} ms CPU", file=sys.stderr)
     print_result(args, result, problem, cpu_ms)
-    return 0 if result.plan is not None else 1
+    if result.plan is not None:
+        return 0
+    return 2 if result.status == "unsupported" else 1
 
 
 def _compare(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, problem: Problem) -> int:
