@@ -202,6 +202,26 @@ def test_unsolvable_and_limit_are_distinguished(capsys, hopeless):
     assert json.loads(plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "-T", "0", "--json")[1])["status"] == "limit"
 
 
+COSTS = """(define (domain d) (:predicates (r)) (:functions (total-cost) (f ?x))
+  (:action act :parameters (?x) :effect (and (r) (increase (total-cost) (f ?x)))))
+(define (problem x) (:domain d) (:objects a) (:init (= (f a) {})) (:goal (r)) (:metric minimize (total-cost)))"""
+
+
+def test_a_negative_cost_is_bad_input(capsys, tmp_path):
+    path = tmp_path / "both.pddl"
+    path.write_text(COSTS.format(-1))
+    reason = "the cost -1 of (act a) is not supported: it is below 0"
+    assert plan(capsys, str(path)) == (2, "", f"x: no plan found: {reason}\n")
+    code, out, _ = plan(capsys, str(path), "--json")
+    assert (code, json.loads(out)["status"], json.loads(out)["reason"]) == (2, "unsupported", reason)
+
+
+def test_costs_of_an_anytime_search_have_all_their_digits(capsys, tmp_path):
+    path = tmp_path / "both.pddl"
+    path.write_text(COSTS.format("1234567.25"))
+    assert plan(capsys, str(path), "--anytime")[2].startswith("cost 1234567.25, 1 steps")
+
+
 def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
     path = tmp_path / "goal.pddl"
     path.write_text("(define (problem p) (:domain kitchen)\n (:goal (preference tidy (hand-empty))))")

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tailor.executive.planning import Domain, Problem, Result, Search, Settings
+from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.runtime.planners.named import kairos_command
 from tailor.tools.cli.plan_answers import linked_answer
 from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START, Limits
@@ -61,10 +62,7 @@ def with_kairos(
 
 def anytime(search: AnytimeSearch, limits: Limits) -> Result:
     """The best plan within the limits; prints each better one on standard error. An interrupt ends the search."""
-    result = _improved(search, limits)
-    if result.plan is not None:
-        _report_end(search, limits)
-    return result
+    return _reported(_improved(search, limits), search, limits)
 
 
 def _improved(search: AnytimeSearch, limits: Limits) -> Result:
@@ -82,12 +80,15 @@ def _improved(search: AnytimeSearch, limits: Limits) -> Result:
 
 
 def _report(measure: str, value: float, plan: Plan, by: str) -> None:
-    print(f"{measure} {value:g}, {len(plan.steps)} steps, {by}", file=sys.stderr)
+    print(f"{measure} {format_number(value)}, {len(plan.steps)} steps, {by}", file=sys.stderr)
 
 
-def _report_end(search: AnytimeSearch, limits: Limits) -> None:
-    why = "no plan is better" if search.ended == "proven" else search.ended or limits.why_none_better
-    print(f"best plan found: {why}", file=sys.stderr)
+def _reported(result: Result, search: AnytimeSearch, limits: Limits) -> Result:
+    """The result; of one with a plan, prints why there is none better."""
+    if result.plan is not None:
+        why = "no plan is better" if search.ended == "proven" else search.ended or limits.why_none_better
+        print(f"best plan found: {why}", file=sys.stderr)
+    return result
 
 
 def anytime_beside_kairos(
@@ -115,14 +116,10 @@ def anytime_beside_kairos(
         child.kill()
     theirs = None if decided else linked_answer(child, domain, problem).plan
     value = math.inf if theirs is None else quality(theirs, problem)
-    if theirs is not None and value < search.value:
-        _report(search.measure, value, theirs, "by kairos-planner")
-        ours, planner = Result("solved", theirs, "", *search.counts), "kairos"
-    else:
-        planner = ""
-    if ours.plan is not None:
-        _report_end(search, limits)
-    return ours, planner
+    if theirs is None or value >= search.value:
+        return _reported(ours, search, limits), ""
+    _report(search.measure, value, theirs, "by kairos-planner")
+    return _reported(Result("solved", theirs, "", *search.counts), search, limits), "kairos"
 
 
 def external(command: str, texts: tuple[str, str], domain: Domain, problem: Problem, limit_s: float) -> Result:

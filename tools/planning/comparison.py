@@ -13,6 +13,7 @@ from pathlib import Path
 from rich.table import Table
 
 from tailor.executive.planning import Problem, Result, validate
+from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.executive.planning.plan_quality import total_cost
 from tailor.tools.cli.plan_search import external
 
@@ -76,7 +77,7 @@ def _row(name: str, plan: Callable[[], Result], problem: Problem, since_start: b
         name,
         len(found.steps),
         found.makespan if found.durative else None,
-        total_cost(found, problem) if costly else None,
+        total_cost(found, problem) if costly and not fault else None,
         round(cpu_s, 3),
         round(wall_s, 3),
         not fault,
@@ -107,6 +108,6 @@ def table(rows: Sequence[Row], problem: str) -> Table:
         drawn.add_column(column, justify="right", no_wrap=True)
     drawn.add_column("plan")
     for row in rows:
-        numbers = ("-" if number is None else f"{number:g}" for number in (row.steps, row.makespan, row.cost))
+        numbers = ("-" if number is None else format_number(number) for number in (row.steps, row.makespan, row.cost))
         drawn.add_row(row.planner, *numbers, f"{row.cpu_s:.2f}", f"{row.wall_s:.2f}", row.reason or "sound")
     return drawn

@@ -104,6 +104,19 @@ def test_costs_are_those_of_the_metric(capsys, tmp_path):
     assert [row["cost"] for row in rows] == [5, 9]
 
 
+def test_a_plan_without_a_cost_is_unsound_and_large_costs_have_all_their_digits(capsys, tmp_path):
+    text = """(define (domain d) (:predicates (q)) (:functions (total-cost) (f ?x))
+      (:action act :parameters (?x) :effect (and (q) (increase (total-cost) (f ?x)))))
+      (define (problem one) (:domain d) (:objects a b) (:init (= (f b) 1234567.25)) (:goal (q)))"""
+    (tmp_path / "both.pddl").write_text(text)
+    files = [str(tmp_path / "both.pddl")]
+    _, rows = compared(capsys, files, printing("(act a)"), options=("--lifted",))
+    assert [row["cost"] for row in rows] == [1234567.25, None]
+    assert "(act a) has no cost" in rows[1]["reason"]
+    assert main(["plan", *files, "--compare", printing("(act b)")]) == 0
+    assert capsys.readouterr().out.count("1234567.25") == 2
+
+
 def test_without_a_plan_of_ours_the_code_is_1_and_a_missing_program_is_one_line(capsys):
     code, rows = compared(capsys, KITCHEN, printing(printed("kitchen-s1.ground.plain")), options=("-l", "3"))
     assert code == 1
