@@ -63,7 +63,8 @@ class Deepening(Generic[P]):
                         stack.append(other)
                 yield None
             bound = beyond
-        yield search_exhausted(self._pruned, self._settings.step_limit, self.generated, self.visited)
+        exhaustive, most = self._space.is_exhaustive(), self._settings.step_limit
+        yield search_exhausted(exhaustive, self._pruned, most, self.generated, self.visited)
 
     def _children(self, plan: P, order: int) -> list[tuple[Rank, P]]:
         """The children with their ranks, the best last: it is refined first."""

@@ -38,6 +38,10 @@ class GroundSpace:
         """See `PlanSpace`: whether there is a schedule in which no events interfere."""
         return schedule(plan, self._task, self._world) is not None
 
+    def is_exhaustive(self) -> bool:
+        """See `PlanSpace`."""
+        return not self._task.has_alternatives_over_all()
+
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """See `PlanSpace`; a plan without flaws or schedule has no refinements."""
         if plan.open is None and plan.threats is None:

@@ -43,6 +43,10 @@ class LiftedSpace:
         bindings = plan.bindings.completed()
         return bindings is not None and self._schedule(plan, _names(plan, bindings)) is not None
 
+    def is_exhaustive(self) -> bool:
+        """See `PlanSpace`."""
+        return not self._task.ground.has_alternatives_over_all()
+
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
         if plan.open is None and plan.threats is None:

@@ -22,6 +22,10 @@ class PlanSpace(Protocol[P]):
         """Whether a plan without flaws can be executed."""
         ...
 
+    def is_exhaustive(self) -> bool:
+        """Whether every plan is below the root, so that a space without solutions proves that there is none."""
+        ...
+
     def refine(self, plan: P, order: int) -> list[P]:
         """All resolvers of the flaw that the order-th flaw order selects."""
         ...

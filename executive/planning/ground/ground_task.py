@@ -19,7 +19,7 @@ from tailor.executive.planning.ground.ground_formula import (
 from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.structures.connectives import FALSE, conjuncts
+from tailor.executive.planning.structures.connectives import FALSE, Disjunction, conjuncts
 from tailor.executive.planning.structures.orderings import FIRST
 
 CostOf = OneOf["unit", "duration", "relative", "metric"]
@@ -42,6 +42,15 @@ class GroundTask:
     simple: bool  # no action has conditional effects
     first_node: int  # node of the first step, after the initial state, the goal and the timed literals
     moments: int  # nodes of a step: start and end, or only one if actions take no time
+
+    def has_alternatives_over_all(self) -> bool:
+        """Whether an action has a condition over all with alternatives, of which any may hold at any time.
+
+        Plan space keeps to one of them for the whole action, so it lacks plans in which they take turns.
+        """
+        actions = {action for achievers in self.achievers for action, _ in achievers}
+        conditions = (condition for action in actions for condition in action.conditions)
+        return any(isinstance(part, Disjunction) and first < last for part, (first, last) in conditions)
 
 
 def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") -> Generator[None, None, GroundTask]:
