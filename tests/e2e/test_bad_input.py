@@ -65,12 +65,46 @@ def refused(*arguments):
         (("record", "--max-size", "nan"), "--max-size is nan, expected 0 to 1e+09"),
         (("cut", "run.mcap", "--from", "inf"), "--from is inf, expected seconds from 0 on"),
         (("compare", "a.mcap", "b.mcap", "--plot", "c.xyz"), "--plot c.xyz: expected a name that ends in .png"),
+        (("view", "a.mcap", "-o", "a.mcap"), "--output a.mcap: expected a name that ends in .html or .htm"),
+        (("scene", "--layout", "soccer", "-o", "a.mcap"), "--output a.mcap: expected a name that ends in .json"),
+        (
+            ("picture", "a.mcap", "-o", "p.txt"),
+            "--output p.txt: expected a name that ends in .png, .gif, .webp or .apng",
+        ),
+        (("picture", "a.mcap", "-o", ""), "--output .: expected a name"),
+        (("why", "a.mcap", "-o", "p.txt"), "--output p.txt: expected a name that ends in .png or .html"),
+        (("check-driver", "agilo", "--report", "p.txt"), "--report p.txt: expected a name that ends in .md"),
+        (("sim", "agilo", "--leave", "zz"), "--leave zz: expected 32 hex digits"),
+        (("driver", "nowhere.toml", "--leave", "zz"), "--leave zz: expected 32 hex digits"),
+        (("up", "arm", "--letters", "A", "--scenario", "letter-T"), "--letters: expected without --scenario"),
+        (("executive", "soccer", "--goal", "(", "--wait"), "--goal: expected without --wait"),
+        (("goal", " "), "the goal is empty, expected a PDDL goal"),
     ],
 )
 def test_an_error_on_the_command_line_is_reported_in_one_line(arguments, expected):
     if arguments[0] in ("goal",):
         arguments = (*arguments, "--connect", free_endpoint())
     assert expected in refused(*arguments)
+
+
+def test_a_demonstration_of_an_unknown_scenario_removes_no_recording(tmp_path):
+    recording = tmp_path / "greedy.mcap"
+    recording.write_bytes(b"precious")
+    assert "no scenario 'nope'" in refused("demo", "--scenario", "nope", "--output", tmp_path)
+    assert recording.read_bytes() == b"precious"
+
+
+def test_a_folder_is_no_output(tmp_path):
+    folder = tmp_path / "p.png"
+    folder.mkdir()
+    assert refused("picture", "a.mcap", "-o", folder).endswith("p.png: is a folder, expected a file")
+
+
+@pytest.mark.parametrize("command", [("up", "soccer", "--once"), ("bus",)])
+def test_a_bus_for_other_machines_without_keys_is_refused_before_anything_starts(tmp_path, command):
+    """A robot would drive, and nobody on another machine could stop it."""
+    line = refused(*command, "--secure", "--keys", tmp_path / "none", "--connect", free_endpoint())
+    assert "none/router: no authority.pem, expected a folder that `tailor keys new NAME` made" in line
 
 
 @pytest.mark.promise("P39")

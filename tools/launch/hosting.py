@@ -8,12 +8,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from tailor.runtime.bus.opening import open_local_router
+from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.keys.registry import ROUTER, registered_roles
 
 GATEWAY_SILENCE_NS = 5_000_000_000  # of its main loop; floods keep only zenoh's threads busy
 
@@ -23,7 +25,7 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
     """The router's own session; start `gateways` beside it.
 
     Raises:
-      UsageError: The bus runs already, or an endpoint is in use or malformed.
+      UsageError: The bus runs already, an endpoint is in use or malformed, or the keys for other machines are missing.
     """
     for endpoint in _endpoints(settings):
         _check_free(endpoint)
@@ -31,6 +33,9 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
         raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
     if settings.remote and settings.security == "open":
         raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
+    if settings.remote:  # found missing here, not by a gateway beside a robot that drives already
+        identity_in(f"{settings.keys}/{ROUTER}")
+        registered_roles(settings.keys)
     if settings.security == "open":
         report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
     secured, keys = settings.security != "open", settings.key_profile

@@ -17,6 +17,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.output_files import check_output
 from tailor.tools.conformance import report as reports
 from tailor.tools.conformance.bench import Bench, NotPossible
 from tailor.tools.conformance.clause import Verdict
@@ -59,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     unknown = sorted(set(named) - set(known))
     if unknown:
         raise UsageError(f"--clause {', '.join(unknown)}: expected one of: {', '.join(known)}")
+    if arguments.report is not None:
+        check_output("--report", arguments.report, (".md",))
     codec.prime()
     with open_bus(arguments, "executive") as executive, open_bus(arguments, "people") as people:
         sensors = [sensor.topic for sensor in spec.sensors]
@@ -75,10 +78,10 @@ def run(arguments: argparse.Namespace) -> int:
             report = _checked(bench, arguments, named, "simulator" if simulated else "hardware")
         finally:
             bench.request(arm=False)
-    if arguments.report is not None:
-        arguments.report.write_text(reports.markdown(report), encoding="utf-8")
     if arguments.json:
         print(json.dumps(reports.values(report)))
+    if arguments.report is not None:
+        arguments.report.write_text(reports.markdown(report), encoding="utf-8")
     return 0 if report.kept and not (report.misfits or report.not_compared) else 1
 
 

@@ -19,7 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.endpoint import bus_settings, checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.launch.hardware import hardware_of
 
 
@@ -39,6 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     notifier = Notifier.from_environment()
     if arguments.attempts < 0:
         raise UsageError(f"--attempts is {arguments.attempts}, expected at least 0")
+    leave = checked_sender(arguments.leave, "--leave")
     hardware = hardware_of(arguments.hardware, bus_settings(arguments).endpoint)
     spec = shipped_driver_spec(hardware.robot)
     stop = stop_on_signals()
@@ -52,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
             session,
             MonotonicClock(),
             epoch=1 + secrets.randbelow(2**62),
-            leave=arguments.leave,
+            leave=leave,
             retry=RetryPolicy(attempts=arguments.attempts),
             report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
         )

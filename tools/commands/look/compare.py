@@ -12,9 +12,9 @@ from typing import Any
 
 from rich.table import Table
 
-from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.schemas.reason_text import reason_text
+from tailor.tools.cli.output_files import check_output
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.comparison import ComparedRun, chosen, command_differences, compared_run
 
@@ -29,8 +29,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if results and commands are equal, 1 if not."""
-    if arguments.plot and arguments.plot.suffix != ".png":
-        raise UsageError(f"--plot {arguments.plot}: expected a name that ends in .png")
+    if arguments.plot:
+        check_output("--plot", arguments.plot, (".png",))
     a, b = compared_run(arguments.first), compared_run(arguments.second)
     comparison = _comparison(a, b)
     if arguments.json:

@@ -9,6 +9,7 @@ import argparse
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_files import check_output
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,12 +30,11 @@ def run(arguments: argparse.Namespace) -> int:
     from tailor.tools.figures.paths import draw_paths
     from tailor.tools.figures.recorded_track import recorded_track
 
+    check_output("--output", arguments.output, (".png", *SUFFIXES))
     tracks = [recorded_track(path.stem, path) for path in arguments.recording]
-    if arguments.output.suffix not in SUFFIXES:
-        draw_paths(tracks, arguments.output)
-    else:
-        if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
-            raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
-        move_paths(tracks, arguments.output)
+    if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
+        raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
+    draw = move_paths if arguments.output.suffix.lower() in SUFFIXES else draw_paths
+    draw(tracks, arguments.output)
     print(arguments.output)
     return 0

@@ -19,6 +19,7 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.output_files import check_output
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
 from tailor.tools.scenes.recorded_scenes import add_scenes
@@ -69,6 +70,7 @@ def _write(arguments: argparse.Namespace) -> int:
 def _layout(arguments: argparse.Namespace) -> int:
     text = json.dumps(layout(arguments.layout), indent=1)
     target: Path = arguments.output or Path(f"{arguments.layout}.foxglove.json")
+    check_output("--output", target, (".json",))
     try:
         target.write_text(f"{text}\n", encoding="utf-8")
     except OSError as error:

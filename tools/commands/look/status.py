@@ -53,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if the system is healthy at the end, 1 if not."""
-    live = sys.stdout.isatty() and not arguments.json and arguments.seconds is None
+    live = sys.stdout is not None and sys.stdout.isatty() and not arguments.json and arguments.seconds is None
     seconds = OBSERVE_S if arguments.seconds is None else arguments.seconds
     if not MIN_S <= seconds <= MAX_S:
         raise UsageError(f"--seconds is {seconds:g}, expected {MIN_S:g} to {MAX_S:g}")

@@ -16,6 +16,7 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
+from tailor.tools.cli.output_files import check_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.operator.stop_button import StopButton
 from tailor.tools.viewer.explainer import Explainer
@@ -75,6 +76,7 @@ def _write(arguments: argparse.Namespace) -> int:
     recordings: list[Path] = arguments.recordings
     [first, *others] = recordings
     output: Path = arguments.output or (first.with_name("runs.html") if others else first.with_suffix(".html"))
+    check_output("--output", output, (".html", ".htm"))
     with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
         runs = {str(path) if others else path.name: _events(path, arguments) for path in recordings}
         text = side_by_side(output.stem, "", runs) if others else page(first.name, runs[first.name])

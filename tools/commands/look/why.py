@@ -16,6 +16,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_files import check_output
 from tailor.tools.viewer.decisions import Decision, decisions_of, executed, in_force
 from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import Explainer, fields_of
@@ -64,8 +65,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Explain; 0 if a decision had free parameters, else 1."""
     output: Path | None = arguments.output
-    if output is not None and output.suffix not in (".png", ".html"):
-        raise UsageError(f"--output {output}: expected a .png or .html file")
+    if output is not None:
+        check_output("--output", output, (".png", ".html"))
     decisions = explained_decisions(arguments.recording, arguments.at, arguments.sender)
     if arguments.json:
         print(json.dumps([_json_value(explained) for explained in decisions], allow_nan=False))
@@ -162,7 +163,7 @@ def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     from tailor.tools.figures.alternatives import draw_alternatives  # imports matplotlib, which is slow
     from tailor.tools.figures.report_page import image, page
 
-    if output.suffix == ".png":
+    if output.suffix.lower() == ".png":
         draw_alternatives(explained, output)
     else:
         with tempfile.TemporaryDirectory() as folder:

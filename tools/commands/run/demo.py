@@ -14,6 +14,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import Deployment, executive_config
@@ -45,6 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run both and write recordings, page and picture; 0 if both runs reached the goal."""
     if arguments.seed < 0:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
+    config = executive_config("soccer", Deployment(scenario=arguments.scenario))
+    build_context(config, sender="")  # reports what is wrong with it before the recordings of before are removed
     stop = stop_on_signals()
     folder: Path = arguments.output
     folder.mkdir(parents=True, exist_ok=True)
@@ -52,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, horizon in RUNS:
         recording = folder / f"{name}.mcap"
         recording.unlink(missing_ok=True)
-        _run_once(arguments, name, horizon, recording, stop)
+        _run_once(config, arguments, (name, horizon), recording, stop)
         if stop.requested:
             return 130
         tracks.append(recorded_track(f"{name} (h = {horizon})", recording))
@@ -103,9 +106,10 @@ def next_lines(folder: Path) -> list[str]:
     ]
 
 
-def _run_once(arguments: argparse.Namespace, name: str, horizon: int, recording: Path, stop: Stop) -> None:
-    config = executive_config("soccer", Deployment(scenario=arguments.scenario))
-    settings = config.settings
+def _run_once(
+    config: ExecutiveConfig, arguments: argparse.Namespace, mode: tuple[str, int], recording: Path, stop: Stop
+) -> None:
+    (name, horizon), settings = mode, config.settings
     refinement = replace(settings.refinement, horizon=horizon)
     config = replace(config, settings=replace(settings, seed=arguments.seed, refinement=refinement))
     with screen(quiet=arguments.json) as shown:

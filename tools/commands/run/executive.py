@@ -93,6 +93,8 @@ def _advice(state: State, robot: str) -> str:
 
 
 def _goal(context: Context, arguments: argparse.Namespace) -> str:
+    if arguments.wait and arguments.goal is not None:
+        raise UsageError("--goal: expected without --wait, which starts without a goal")
     if arguments.wait:
         return ""
     goal: str = arguments.goal or context.problem.goal_text

@@ -13,7 +13,7 @@ from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.services import ROLES
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.keys.registry import ROUTER, registered_roles
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--listen {listen}: expected --keys with tls/HOST:PORT, and with nothing else")
     folder = run_folder(endpoint)
     if not folder.running():
-        raise UsageError(f"bus endpoint {endpoint}: no router runs on this machine; start one with `tailor bus`")
+        raise UnreachableError(f"bus endpoint {endpoint}: no router runs on this machine; start one with `tailor bus`")
     identity = identity_in(f"{arguments.keys}/{ROUTER}") if arguments.keys else None
     roles = registered_roles(arguments.keys) if arguments.keys else None
     stop = stop_on_signals()

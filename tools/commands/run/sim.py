@@ -16,7 +16,7 @@ from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
-from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.state_lines import state_lines
@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     declared = shipped_driver_spec(arguments.robot)
     if not 0.1 <= arguments.speed <= MAX_SPEED:
         raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MAX_SPEED:g}")
+    leave = checked_sender(arguments.leave, "--leave")
     deployment = deployment_from(arguments)
     world = make_world(arguments.robot, deployment.scenario, deployment.executive.seed)
     stop = stop_on_signals()
@@ -52,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
         epoch = 1 + secrets.randbelow(2**62)  # another one at every start
-        node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, arguments.leave)
+        node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, leave)
         _run(node, world.body.robot, stop, notifier)
     return 0
 

@@ -54,7 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
     set_for_host()
     if arguments.require_recording and arguments.record is None:
         raise UsageError("--require-recording: expected --record FILE as well")
-    if arguments.letters:
+    if arguments.letters is not None:
+        if arguments.scenario is not None:
+            raise UsageError("--letters: expected without --scenario, whose letters are its own")
         arguments.scenario = f"word-{arguments.letters.upper()}"
     deployment = deployment_from(arguments)
     check_package(arguments.domain)

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def keys_of(seeds: Seeds, each: int) -> list[Key]:
-    """Letters with starts of their own: a start decides on the temperature, and one of all letters would be one unit."""
+    """Letters with starts of their own: a start decides on the temperature; one for all letters would be one unit."""
     letters = sorted(font())
     return [(letters[k % len(letters)], seed) for k, seed in enumerate(seeds.starts(each * len(letters)))]
 
