@@ -40,5 +40,5 @@ class ActionFinished(Message):
     outcome: str  # "done", "failed", "aborted"
     reason: str  # empty if the controller ended it with "done"
     predicted_s: float
-    actual_s: float
+    actual_s: float  # without the time in which the executive held
     detail: str = ""  # of the reason
