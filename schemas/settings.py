@@ -9,8 +9,10 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import shown
 
 T = TypeVar("T")
+MAX_INTEGER = 2**63 - 1  # as TOML promises; larger ones overflow floats, and fill a message with digits
 
 
 def from_table(cls: type[T], table: Mapping[str, Any], where: str) -> T:
@@ -43,6 +45,9 @@ def _build(cls: type, table: Mapping[str, Any], prefix: str, problems: list[str]
             problems.append(f"unknown key '{prefix}{key}' (expected one of: {', '.join(names)})")
         else:
             values[key] = _convert(hints[key], value, f"{prefix}{key}", problems)
+    for field in dataclasses.fields(cls):
+        if field.name not in table and field.default is field.default_factory is dataclasses.MISSING:
+            problems.append(f"'{prefix}{field.name}' is missing, expected {_name_of(hints[field.name])}")
     if problems:
         return None
     try:
@@ -53,25 +58,32 @@ def _build(cls: type, table: Mapping[str, Any], prefix: str, problems: list[str]
 
 
 def _convert(hint: Any, value: Any, key: str, problems: list[str]) -> Any:
-    origin = typing.get_origin(hint)
+    origin, known = typing.get_origin(hint), typing.get_args(hint)
+    if isinstance(value, int) and abs(value) > MAX_INTEGER:
+        problems.append(f"'{key}' is {shown(value)}, expected a number of at most 64 bits")
+        return None
     if dataclasses.is_dataclass(hint) and isinstance(value, Mapping):
         return _build(typing.cast(type, hint), value, f"{key}.", problems)
     if origin is typing.Literal:
-        if value in typing.get_args(hint):
+        if value in known:
             return value
-        problems.append(f"'{key}' is {value!r}, expected one of: {', '.join(map(str, typing.get_args(hint)))}")
+        problems.append(f"'{key}' is {shown(value)}, expected one of: {', '.join(map(str, known))}")
     elif origin is tuple and isinstance(value, list | tuple):
-        item = typing.get_args(hint)
-        hints = [item[0]] * len(value) if item[-1] is Ellipsis else list(item)
+        hints = [known[0]] * len(value) if known[-1] is Ellipsis else list(known)
         if len(hints) == len(value):
             return tuple(_convert(h, v, key, problems) for h, v in zip(hints, value, strict=True))
-        problems.append(f"'{key}' is {value!r}, expected {len(hints)} values")
+        problems.append(f"'{key}' is {shown(value)}, expected {len(hints)} values")
     elif origin in (types.UnionType, typing.Union):
-        return None if value is None else _convert(typing.get_args(hint)[0], value, key, problems)
+        return None if value is None else _convert(known[0], value, key, problems)
     elif hint is float and isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     elif isinstance(hint, type) and isinstance(value, hint) and not (hint is int and isinstance(value, bool)):
         return value
     else:
-        problems.append(f"'{key}' is {value!r}, expected {getattr(hint, '__name__', hint)}")
+        problems.append(f"'{key}' is {shown(value)}, expected {_name_of(hint)}")
     return None
+
+
+def _name_of(hint: Any) -> str:
+    """A type in an error message."""
+    return str(getattr(hint, "__name__", hint))

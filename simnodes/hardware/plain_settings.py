@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Literal
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
 
 MAX_RATE_HZ = 100.0  # of the driver's loop
@@ -71,13 +70,7 @@ def read_plain_settings(file: str) -> PlainSettings:
     Raises:
       UsageError: The file is missing or no TOML, or has wrong keys or values; the message names file and key.
     """
-    try:
-        table = tomllib.loads(Path(file).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"{file}: {error.strerror}, expected the description of a robot") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"{file}: not TOML: {error}") from error
-    settings = from_table(PlainSettings, table, file)
+    settings = from_table(PlainSettings, read_toml(file, "the description of a robot"), file)
     faults = list(_faults(settings))
     if faults:
         raise UsageError(f"{file}: {'; '.join(faults)}")

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.deliberation.context import PlannerCommand, Settings
 from tailor.runtime.planners.named import KAIROS, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
-from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START
@@ -35,13 +33,7 @@ def read_deployment(path: str) -> Deployment:
     """
     if not path:
         return Deployment()
-    try:
-        table = tomllib.loads(Path(path).read_text())
-    except OSError as error:
-        raise UsageError(f"{path}: {error.strerror}, expected a deployment file") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: not TOML: {error}") from error
-    return from_table(Deployment, table, path)
+    return from_table(Deployment, read_toml(path, "a deployment file"), path)
 
 
 def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:

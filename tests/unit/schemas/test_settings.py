@@ -44,12 +44,26 @@ def test_nested_tables_become_nested_settings():
             {"executive": {"refinement": {"arrival_spread": [["x", -0.1]]}}},
             "f.toml: refinement.arrival_spread of x is -0.1, expected a finite number >= 0",
         ),
+        (
+            {"executive": {"adopt_gain_s": 10**400}},
+            f"f.toml: 'executive.adopt_gain_s' is 1{'0' * 56}..., expected a number of at most 64 bits",
+        ),
+        (
+            {"executive": {"seed": 10**5000}},
+            "f.toml: 'executive.seed' is a value of type int that is too long to print, "
+            "expected a number of at most 64 bits",
+        ),
     ],
 )
 def test_a_mistake_is_reported_with_its_key_and_the_expected_value(table, expected):
     with pytest.raises(UsageError) as caught:
         from_table(Deployment, table, "f.toml")
     assert str(caught.value) == expected
+
+
+def test_a_missing_value_is_reported_with_its_key():
+    with pytest.raises(UsageError, match=r"f\.toml: 'scenario' is missing, expected str"):
+        from_table(ExecutiveConfig, {"domain": "soccer"}, "f.toml")
 
 
 @pytest.mark.promise("P39")

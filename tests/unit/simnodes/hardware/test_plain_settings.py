@@ -19,10 +19,12 @@ WRONG = {
     'robot = "r"\n[pose]\ndrift_per_m = -1.0': "pose.drift_per_m is -1, expected 0 to 1",
     'robot = "r"\n[bus]\nprofile = "dds"': "expected one of: plain, rmw_zenoh",
     "robot = ": "not TOML",
+    "robot = " + "[" * 5000: "nested too deeply, expected the description of a robot",
+    f'robot = "r"\n[pose]\nstart = [1{"0" * 400}, 0, 0]': "expected a number of at most 64 bits",
 }
 
 
-@pytest.mark.parametrize("text", WRONG)
+@pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
 def test_a_wrong_description_is_refused_in_one_line_that_names_file_and_key(tmp_path, text):
     file = tmp_path / "robot.toml"
     file.write_text(text)

@@ -1,0 +1,79 @@
+"""Reads TOML and JSON of users, in UTF-8 whatever the locale; whatever is wrong with a file becomes one line."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tailor.schemas.errors import UsageError
+
+T = TypeVar("T")
+
+
+def read_toml(path: Path | str, expected: str) -> dict[str, Any]:
+    """Read a file of TOML.
+
+    Args:
+      path: The file.
+      expected: What the file should have been, for errors, e.g. "a deployment file".
+
+    Raises:
+      UsageError: The file cannot be read, or is no TOML; the message names it.
+    """
+    return _read(path, expected, toml_table)
+
+
+def read_json(path: Path | str, expected: str) -> Any:
+    """Read a file of JSON, as `read_toml`."""
+    return _read(path, expected, json_value)
+
+
+def toml_table(text: str) -> dict[str, Any]:
+    """The table in a text of TOML.
+
+    Raises:
+      ValueError: The text is no TOML, or nested too deeply to be read.
+    """
+    return _parsed(tomllib.loads, text, "TOML")
+
+
+def json_value(text: str) -> Any:
+    """The value in a text of JSON.
+
+    Raises:
+      ValueError: The text is no JSON, or nested too deeply to be read.
+    """
+    return _parsed(json.loads, text, "JSON")
+
+
+def shown(value: Any) -> str:
+    """Text of a value for an error message, at most 60 characters."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # an integer of more digits than Python prints, or endless nesting
+        return f"a value of type {type(value).__name__} that is too long to print"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _read(path: Path | str, expected: str, parse: Callable[[str], T]) -> T:
+    try:
+        return parse(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected {expected}") from error
+    except UnicodeDecodeError as error:
+        where = f"byte 0x{error.object[error.start]:02x} at position {error.start}"
+        raise UsageError(f"{path}: not UTF-8 ({where}), expected {expected}") from None
+    except ValueError as error:
+        raise UsageError(f"{path}: {error}, expected {expected}") from None
+
+
+def _parsed(parse: Callable[[str], T], text: str, language: str) -> T:
+    try:
+        return parse(text)
+    except ValueError as error:
+        raise ValueError(f"not {language}: {error}") from None
+    except RecursionError:  # some thousand brackets: the parsers of the standard library call themselves
+        raise ValueError(f"not {language} that can be read: nested too deeply") from None

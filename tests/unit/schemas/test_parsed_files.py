@@ -1,0 +1,49 @@
+"""Files of users: whatever is wrong with one is stated in one line that names it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import read_json, read_toml
+
+
+@pytest.mark.promise("P39")
+@pytest.mark.parametrize(
+    ("read", "content", "fault"),
+    [
+        (read_toml, b"a = [", "not TOML: Invalid value"),
+        (read_toml, b"# \xe9", "not UTF-8 (byte 0xe9 at position 2)"),
+        (read_toml, b"a = " + b"[" * 5000, "not TOML that can be read: nested too deeply"),
+        (read_toml, b"a = " + b"1" * 5000, "not TOML: Exceeds the limit (4300 digits)"),
+        (read_json, b"{", "not JSON: Expecting property name"),
+        (read_json, b"\xff", "not UTF-8 (byte 0xff at position 0)"),
+        (read_json, b"[" * 100_000, "not JSON that can be read: nested too deeply"),
+    ],
+)
+def test_an_unusable_file_is_refused_in_one_line(
+    tmp_path: Path, read: Callable[..., Any], content: bytes, fault: str
+) -> None:
+    (tmp_path / "file").write_bytes(content)
+    with pytest.raises(UsageError) as caught:
+        read(tmp_path / "file", "a recipe")
+    assert str(caught.value).startswith(f"{tmp_path / 'file'}: {fault}")
+    assert str(caught.value).endswith(", expected a recipe")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="nowhere: No such file or directory, expected a card"):
+        read_json(tmp_path / "nowhere", "a card")
+    with pytest.raises(UsageError, match="Is a directory, expected a card"):
+        read_toml(tmp_path, "a card")
+
+
+@pytest.mark.parametrize(("read", "text"), [(read_toml, 'name = "Bürste"'), (read_json, '{"name": "Bürste"}')])
+def test_files_are_utf_8_in_every_locale(tmp_path: Path, read: Callable[..., Any], text: str) -> None:
+    (tmp_path / "file").write_text(text, encoding="utf-8")
+    assert read(tmp_path / "file", "a file") == {"name": "Bürste"}
