@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import read_json
 from tailor.schemas.services import ROLES, Role
 
 ROUTER = "router"  # the key of the gateway itself
@@ -34,11 +35,8 @@ def registered_roles(keys: str) -> dict[str, Role]:
     path = Path(keys) / FILE
     if not path.exists():
         return {}
-    try:
-        table = json.loads(path.read_text())
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{path}: {error}, expected the file that `tailor keys new` writes") from error
-    if not isinstance(table, dict) or not set(table.values()) <= set(ROLES):
+    table = read_json(path, "the file that `tailor keys new` writes")
+    if not isinstance(table, dict) or not all(role in ROLES for role in table.values()):
         raise UsageError(f"{path}: expected names with one of the roles {', '.join(ROLES)}")
     return table
 

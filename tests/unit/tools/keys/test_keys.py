@@ -74,10 +74,16 @@ def test_a_revoked_name_has_no_role(tmp_path, capsys):
     assert registered_roles(str(tmp_path)) == {"viewing": "observer"}
 
 
-@pytest.mark.parametrize("table", [{"x": "root"}, {"x": ""}, ["people"], "people"])
+@pytest.mark.parametrize("table", [{"x": "root"}, {"x": ""}, {"x": []}, ["people"], "people"])
 def test_an_unknown_role_is_refused(tmp_path, table):
     (tmp_path / "roles.json").write_text(json.dumps(table))
     with pytest.raises(UsageError, match="expected names with one of the roles"):
+        registered_roles(str(tmp_path))
+
+
+def test_a_table_that_cannot_be_read_is_refused(tmp_path):
+    (tmp_path / "roles.json").write_text("[" * 100_000)
+    with pytest.raises(UsageError, match="nested too deeply, expected the file that `tailor keys new` writes"):
         registered_roles(str(tmp_path))
 
 
