@@ -13,6 +13,7 @@ from typing import Any
 
 from tailor.models.cards.card_shape import card_error
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import json_value
 
 FORMAT = 1
 # "clearance" is success beside one object of the action's context
@@ -67,7 +68,7 @@ def read_card(path: Path) -> dict[str, Any]:
       UsageError: The file is missing, not JSON, of another format, incomplete, or an entry has another shape.
     """
     try:
-        card = json.loads(read_bytes(path, MAX_CARD_BYTES))
+        card = json_value(read_bytes(path, MAX_CARD_BYTES).decode())
     except ValueError as error:
         raise UsageError(f"{path}: not a card ({error}), expected JSON") from None
     if not isinstance(card, dict) or card.get("format") != FORMAT:
@@ -84,7 +85,7 @@ def read_card(path: Path) -> dict[str, Any]:
 
 def write_card(path: Path, card: Card) -> None:
     """Write a card as JSON with one entry per line, for readable diffs."""
-    path.write_text(_dumped(card) + "\n")
+    path.write_text(_dumped(card) + "\n", encoding="utf-8")
 
 
 def _dumped(value: Any, indent: str = "") -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from tailor.models.cards.json_shape import arguments_error, is_number, is_range, short
+from tailor.models.cards.json_shape import arguments_error, is_number, is_range
+from tailor.schemas.parsed_files import shown
 
 OUTPUTS = {  # the second form is that of older models, without intervals
     "duration": (["mean_s", "lower_s", "upper_s"], ["mean_s", "std_s"]),
@@ -26,23 +27,23 @@ def card_error(card: Mapping[str, Any]) -> str:
     """First error in a card that has all its entries; empty if there is none."""
     for name in ("robot", "action", "kind", "features", "sha256", "command"):
         if not isinstance(card[name], str) or not card[name]:
-            return f"{name} is {short(card[name])}, expected text"
+            return f"{name} is {shown(card[name])}, expected text"
     if card["kind"] not in OUTPUTS:
         return f"kind is '{card['kind']}', expected one of: {', '.join(OUTPUTS)}"
     for name in ("episodes", "learner", "test", "golden", "versions", *(["feature_units"] * ("feature_units" in card))):
         if not isinstance(card[name], dict):
-            return f"{name} is {short(card[name])}, expected an object"
+            return f"{name} is {shown(card[name])}, expected an object"
     return arguments_error(card["arguments"]) or _outputs_error(card) or _golden_error(card) or _summary_error(card)
 
 
 def _outputs_error(card: Mapping[str, Any]) -> str:
     expected = OUTPUTS[card["kind"]]
     if card["outputs"] not in expected:
-        return f"outputs is {short(card['outputs'])}, expected {expected[0]} of a model of {card['kind']}"
+        return f"outputs is {shown(card['outputs'])}, expected {expected[0]} of a model of {card['kind']}"
     if not is_range(card["output_range"]):
-        return f"output_range is {short(card['output_range'])}, expected two numbers, the lower one first"
+        return f"output_range is {shown(card['output_range'])}, expected two numbers, the lower one first"
     if card["kind"] in KINDS_WITH_THRESHOLD and not is_number(card.get("threshold")):
-        return f"threshold is {short(card.get('threshold'))}, expected a number"
+        return f"threshold is {shown(card.get('threshold'))}, expected a number"
     return ""
 
 
@@ -50,21 +51,21 @@ def _golden_error(card: Mapping[str, Any]) -> str:
     width, rows = len(card["arguments"]), card["golden"].get("arguments")
     complete = isinstance(rows, list) and rows and all(isinstance(row, list) and len(row) == width for row in rows)
     if not complete or not all(is_number(value) for row in rows for value in row):
-        return f"golden arguments are {short(rows)}, expected rows of {width} numbers"
+        return f"golden arguments are {shown(rows)}, expected rows of {width} numbers"
     for name in card["outputs"]:
         values = card["golden"].get(name)
         if not isinstance(values, list) or len(values) != len(rows) or not all(map(is_number, values)):
-            return f"golden {name} is {short(values)}, expected {len(rows)} numbers"
+            return f"golden {name} is {shown(values)}, expected {len(rows)} numbers"
     return ""
 
 
 def _summary_error(card: Mapping[str, Any]) -> str:
     """First error in the entries that lists of models show."""
     if not isinstance(card["learner"].get("name"), str):
-        return f"learner's name is {short(card['learner'].get('name'))}, expected text"
+        return f"learner's name is {shown(card['learner'].get('name'))}, expected text"
     if not is_number(card["episodes"].get("count")):
-        return f"episodes' count is {short(card['episodes'].get('count'))}, expected a number"
+        return f"episodes' count is {shown(card['episodes'].get('count'))}, expected a number"
     for name in TEST_FIGURES[card["kind"]]:
         if not is_number(card["test"].get(name)):
-            return f"test's {name} is {short(card['test'].get(name))}, expected a number"
+            return f"test's {name} is {shown(card['test'].get(name))}, expected a number"
     return ""

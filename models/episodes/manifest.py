@@ -4,14 +4,38 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from tailor.models.cards.json_shape import arguments_error
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import read_json, shown
 
 MANIFEST = "manifest.json"
+
+
+def _is_count(value: Any) -> bool:
+    return type(value) is int and value >= 0
+
+
+def _are_names(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(each, str) for each in value)
+
+
+def _is_context(value: Any) -> bool:
+    return isinstance(value, dict) and _are_names(value.get("names", [])) and isinstance(value.get("failure", ""), str)
+
+
+OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that resuming and training compute with
+    "episodes": (_is_count, "a whole number"),
+    "objects": (lambda value: _is_count(value) and value > 0, "a whole number, at least 1"),
+    "scenarios": (_are_names, "a list of names"),
+    "recordings": (_are_names, "a list of names"),
+    "context": (_is_context, "names of columns, and a failure"),
+    "source_sha256": (lambda value: isinstance(value, str), "text"),
+    "source_files": (lambda value: isinstance(value, dict), "an object"),
+}
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
@@ -25,14 +49,11 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     """Read the manifest of a data set.
 
     Raises:
-      UsageError: The file is missing, or is not a manifest.
+      UsageError: The file is missing, cannot be read, or is not a manifest.
     """
-    try:
-        manifest = json.loads((folder / MANIFEST).read_text())
-    except OSError:
-        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` writes them)") from None
-    except ValueError as error:
-        raise UsageError(f"{folder / MANIFEST}: not a manifest ({error}), `tailor gather` writes them") from None
+    if not (folder / MANIFEST).exists():
+        raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` writes them)")
+    manifest = read_json(folder / MANIFEST, "a manifest (`tailor gather` writes them)")
     problem = _manifest_error(manifest)
     if problem:
         raise UsageError(f"{folder / MANIFEST}: not a manifest ({problem}), `tailor gather` writes them")
@@ -40,10 +61,13 @@ def read_manifest(folder: Path) -> dict[str, Any]:
 
 
 def _manifest_error(manifest: Any) -> str:
-    """First error in the entries that training needs; empty if there is none."""
+    """First error in the entries that resuming and training need; empty if there is none."""
     if not isinstance(manifest, dict):
         return f"a {type(manifest).__name__}, expected an object"
     for key in ("robot", "action"):
         if not isinstance(manifest.get(key), str):
-            return f"{key} is {manifest.get(key)!r}, expected a name"
+            return f"{key} is {shown(manifest.get(key))}, expected a name"
+    for key, (has_shape, expected) in OPTIONAL.items():
+        if manifest.get(key) is not None and not has_shape(manifest[key]):
+            return f"{key} is {shown(manifest[key])}, expected {expected}"
     return arguments_error(manifest.get("arguments"))

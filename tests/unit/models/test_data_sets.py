@@ -92,6 +92,13 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         ("arguments", [{"name": "x"}], "argument {'name': 'x'}, expected name, unit, and numbers lower <= upper"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 1, "upper": 0}], "expected name, unit, and numbers lower"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),
+        ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": 10**400}], "and numbers lower <= upper"),
+        ("episodes", "x", "episodes is 'x', expected a whole number"),
+        ("objects", 0, "objects is 0, expected a whole number, at least 1"),
+        ("scenarios", [5], "scenarios is [5], expected a list of names"),
+        ("context", {"names": "x"}, "expected names of columns, and a failure"),
+        ("source_sha256", [], "source_sha256 is [], expected text"),
+        ("source_files", [1], "source_files is [1], expected an object"),
     ],
 )
 def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, message: str) -> None:
@@ -100,6 +107,12 @@ def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, v
     with pytest.raises(UsageError, match="not a manifest") as caught:
         read_data_set(folder)
     assert message in str(caught.value)
+
+
+def test_a_manifest_that_cannot_be_read_is_named(folder: Path) -> None:
+    (folder / "manifest.json").write_text("[" * 100_000)
+    with pytest.raises(UsageError, match=r"manifest\.json: not JSON that can be read: nested too deeply"):
+        read_data_set(folder)
 
 
 def test_an_episode_that_is_there_twice_would_be_in_training_and_test(folder: Path) -> None:

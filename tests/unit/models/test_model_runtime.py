@@ -141,7 +141,10 @@ def test_a_model_without_its_card_or_a_card_without_its_model_is_refused(zoo: Pa
         runtime.load_robot("agilo", zoo)
 
 
-@pytest.mark.parametrize("content", ["", "[]", '{"format": 99}', json.dumps({"format": 1, "robot": "agilo"}), "\x00"])
+BROKEN = ["", "[]", '{"format": 99}', json.dumps({"format": 1, "robot": "agilo"}), "\x00", "[" * 100_000]
+
+
+@pytest.mark.parametrize("content", BROKEN, ids=range(len(BROKEN)))
 def test_a_broken_card_is_refused(zoo: Path, content: str) -> None:
     card_path(duration(zoo)).write_text(content)
     with pytest.raises(UsageError, match="card"):
