@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of_robot
+from tailor.schemas.parsed_files import toml_table
 from tailor.simnodes.guard import Limit
+from tailor.simnodes.typed_values import finite_number, table_in, tables_in, text
 
 MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command protects nothing
 
@@ -69,57 +69,60 @@ def shipped_driver_spec(robot: str) -> DriverSpec:
         return read_driver_spec(declared.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"domain {spec.name}: driver = '{spec.driver}': {error.strerror}") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise UsageError(f"{declared}: {error}, expected the specification of a driver") from error
+    except ValueError as error:
+        raise UsageError(f"{declared}: not the specification of a driver: {error}") from error
 
 
-def read_driver_spec(text: str) -> DriverSpec:
+def read_driver_spec(written: str) -> DriverSpec:
     """The declaration in a TOML text.
 
     Raises:
-      KeyError, TypeError: A key is missing or has a value of another type.
-      ValueError: The text is no TOML, a limit is not finite, or the timeout exceeds MAX_TIMEOUT_S.
+      ValueError: The text is no TOML, a key is missing or has a value of another type, a limit is not finite, or the
+        timeout exceeds MAX_TIMEOUT_S; the message names the key.
     """
-    table = tomllib.loads(text)
-    commands = table["commands"] if "commands" in table else [table["command"]]
-    outlets = tuple(OutletSpec(each["topic"], tuple(axis["name"] for axis in each["axes"])) for each in commands)
+    return driver_spec(toml_table(written))
+
+
+def driver_spec(table: Mapping[str, Any]) -> DriverSpec:
+    """The declaration in a table, see `read_driver_spec`."""
+    commands = tables_in(table, "commands") if "commands" in table else [table_in(table, "command")]
+    outlets = tuple(OutletSpec(text(each, "topic"), _axis_names(each)) for each in commands)
     names = [name for outlet in outlets for name in (outlet.topic, *outlet.axes)]
     repeated = sorted({name for name in names if names.count(name) > 1})
     if repeated:
         raise ValueError(f"{', '.join(repeated)}: declared twice, expected topics and axes of different names")
+    sensors = table_in(table, "sensors") if "sensors" in table else {}
     return DriverSpec(
         command_topic=outlets[0].topic,
         axes=tuple(name for outlet in outlets for name in outlet.axes),
-        limits=tuple(_limit(axis) for each in commands for axis in each["axes"]),
+        limits=tuple(_limit(axis) for each in commands for axis in tables_in(each, "axes")),
         timeout_ns=min(_timeout_ns(each) for each in commands),
         outlets=outlets if len(outlets) > 1 else (),
-        sensors=tuple(_sensor(name, each) for name, each in table.get("sensors", {}).items()),
+        sensors=tuple(_sensor(name, table_in(sensors, name)) for name in sensors),
     )
 
 
+def _axis_names(command: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(text(axis, "name") for axis in tables_in(command, "axes"))
+
+
 def _sensor(name: str, table: Mapping[str, Any]) -> SensorSpec:
-    return SensorSpec(name, _number(table, "rate_hz") if "rate_hz" in table else 0.0, str(table.get("frame", "")))
+    rate_hz = finite_number(table, "rate_hz") if "rate_hz" in table else 0.0
+    return SensorSpec(name, rate_hz, text(table, "frame") if "frame" in table else "")
 
 
 def _timeout_ns(command: Mapping[str, Any]) -> int:
-    timeout_s = _number(command, "timeout_s")
+    timeout_s = finite_number(command, "timeout_s")
     if not 0.0 < timeout_s <= MAX_TIMEOUT_S:
         raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {MAX_TIMEOUT_S:g}")
     return round(timeout_s * 1e9)
 
 
 def _limit(axis: Mapping[str, Any]) -> Limit:
-    lower, upper = _number(axis, "lower"), _number(axis, "upper")
+    lower, upper = finite_number(axis, "lower"), finite_number(axis, "upper")
     if lower >= upper:
         raise ValueError(f"{axis['name']} goes from {lower:g} to {upper:g}, expected the lower limit first")
-    kept = _number(axis, "kept") if "kept" in axis else None
+    kept = finite_number(axis, "kept") if "kept" in axis else None
     if kept is not None and not lower <= kept <= upper:
         raise ValueError(f"{axis['name']} is kept at {kept:g}, expected a set-point within its limits")
     return Limit(lower, upper, kept)
-
-
-def _number(table: Mapping[str, Any], key: str) -> float:
-    value = table[key]
-    if type(value) not in (int, float) or not math.isfinite(value):
-        raise ValueError(f"{key} is {value!r}, expected a finite number")
-    return float(value)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.driver_spec import DriverSpec, read_driver_spec, shipped_driver_spec
+from tailor.schemas.parsed_files import read_toml
+from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
+
+EXAMPLE = "simnodes/agilo/driver.toml"
 
 
 def driver_of(robot: str, file: str | None) -> DriverSpec:
@@ -19,13 +20,9 @@ def driver_of(robot: str, file: str | None) -> DriverSpec:
     if file is None:
         return shipped_driver_spec(robot)
     try:
-        return read_driver_spec(Path(file).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"{file}: {error.strerror}, expected the specification of a driver") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise UsageError(
-            f"{file}: {error}, expected the specification of a driver such as simnodes/agilo/driver.toml"
-        ) from error
+        return driver_spec(read_toml(file, f"the specification of a driver, as {EXAMPLE}"))
+    except ValueError as error:
+        raise UsageError(f"{file}: not the specification of a driver: {error}, as in {EXAMPLE}") from error
 
 
 def check_driver(domain: Domain, driver: DriverSpec) -> None:

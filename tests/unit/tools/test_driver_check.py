@@ -30,11 +30,41 @@ def test_all_mismatches_are_reported_at_once():
     assert "v ranges from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
 
 
-def test_a_file_that_specifies_no_driver_is_refused(tmp_path):
+COMMAND = '[command]\ntopic = "cmd_vel"\ntimeout_s = 0.3\naxes = [{ name = "v", lower = -1, upper = 1 }]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", "command is missing, expected a table, as in simnodes/agilo/driver.toml"),
+        ("command = 5", "command is 5, expected a table"),
+        ("commands = []", "commands is [], expected a list of tables, at least one"),
+        ("commands = [5]", "commands is [5], expected a list of tables, at least one"),
+        (COMMAND.replace('"cmd_vel"', "5"), "topic is 5, expected text"),
+        (COMMAND.replace('"v"', "[1]"), "name is [1], expected text"),
+        (COMMAND.replace("upper = 1", f"upper = 1{'0' * 400}"), "expected a finite number"),
+        (COMMAND.replace("[{", "[[").replace("}]", "]]").replace("name = ", ""), "not TOML"),
+        (COMMAND.replace("timeout_s = 0.3\n", ""), "timeout_s is missing, expected a finite number"),
+        ("sensors = 5\n" + COMMAND, "sensors is 5, expected a table"),
+        (COMMAND + "[sensors]\nodom = 5", "odom is 5, expected a table"),
+        (COMMAND + "[sensors]\nodom = { frame = 5 }", "frame is 5, expected text"),
+        ("a = " + "[" * 5000, "nested too deeply"),
+        ("# \xe9", "not UTF-8"),
+    ],
+)
+def test_a_file_that_specifies_no_driver_is_refused_in_one_line(tmp_path, text, expected):
     file = tmp_path / "driver.toml"
-    file.write_text("[robot]\n")
-    with pytest.raises(UsageError, match="expected the specification of a driver"):
+    file.write_bytes(text.encode("latin-1"))
+    with pytest.raises(UsageError) as caught:
         driver_of("agilo", str(file))
+    assert expected in str(caught.value)
+    assert "the specification of a driver" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_driver_is_specified_by_its_command_alone(tmp_path):
+    (tmp_path / "driver.toml").write_text(COMMAND)
+    assert driver_of("agilo", str(tmp_path / "driver.toml")).axes == ("v",)
 
 
 @pytest.mark.promise("P39")

@@ -65,8 +65,8 @@ def test_each_fault_of_a_domain_is_named(fault):
         ("rate_hz = 50", "rate_hz = 20", "driver.toml: sensors.odom: rate_hz is 20, expected 50"),
         ("ball =", "lidar =", "driver.toml: sensors: there is no topic 'lidar'"),
         ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
-        ("timeout_s = 0.3", "", "driver.toml: 'timeout_s', expected the specification"),
-        ('robot = "agilo"', "robot = ", "driver.toml: Invalid value"),
+        ("timeout_s = 0.3", "", "timeout_s is missing, expected a finite number"),
+        ('robot = "agilo"', "robot = ", "driver.toml: not the specification of a driver: not TOML: Invalid value"),
     ],
 )
 def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, fault):
