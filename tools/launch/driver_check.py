@@ -8,8 +8,6 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
 from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
 
-EXAMPLE = "simnodes/agilo/driver.toml"
-
 
 def driver_of(robot: str, file: str | None) -> DriverSpec:
     """Specification of a driver: from `file`, or that of the simulated robot.
@@ -20,9 +18,9 @@ def driver_of(robot: str, file: str | None) -> DriverSpec:
     if file is None:
         return shipped_driver_spec(robot)
     try:
-        return driver_spec(read_toml(file, f"the specification of a driver, as {EXAMPLE}"))
+        return driver_spec(read_toml(file, "the specification of a driver (docs/robots/driver.md)"))
     except ValueError as error:
-        raise UsageError(f"{file}: not the specification of a driver: {error}, as in {EXAMPLE}") from error
+        raise UsageError(f"{file}: not the specification of a driver: {error} (docs/robots/driver.md)") from error
 
 
 def check_driver(domain: Domain, driver: DriverSpec) -> None:

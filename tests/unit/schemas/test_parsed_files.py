@@ -12,7 +12,6 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json, read_toml
 
 
-@pytest.mark.promise("P39")
 @pytest.mark.parametrize(
     ("read", "content", "fault"),
     [

@@ -36,7 +36,7 @@ COMMAND = '[command]\ntopic = "cmd_vel"\ntimeout_s = 0.3\naxes = [{ name = "v", 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("", "command is missing, expected a table, as in simnodes/agilo/driver.toml"),
+        ("", "command is missing, expected a table (docs/robots/driver.md)"),
         ("command = 5", "command is 5, expected a table"),
         ("commands = []", "commands is [], expected a list of tables, at least one"),
         ("commands = [5]", "commands is [5], expected a list of tables, at least one"),
