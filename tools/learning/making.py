@@ -23,6 +23,7 @@ from tailor.tools.learning import gathering, run_gathering
 from tailor.tools.learning.active_gathering import Active, run_active
 from tailor.tools.learning.gathering import DataSetSpec
 from tailor.tools.learning.recipe import Recipe, Round
+from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.steps import Step, counted
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
@@ -30,9 +31,9 @@ from tailor.tools.learning.training_request import (
     DEFAULT_LEARNER,
     TrainingRequest,
     data_sets,
+    feature_spaces,
 )
-from tailor.tools.learning.training_run import train_models
-from tailor.tools.lockstep.bodies import check_profile
+from tailor.tools.learning.training_run import checked, train_models
 
 WHOLE = "whole"  # marker of a folder of models, written last
 CHOOSING = ("duration", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
@@ -97,14 +98,25 @@ class Making:
         return [self.random, *(self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds)))]
 
 
+def check(making: Making) -> None:
+    """Check all names in the recipe, before anything is gathered.
+
+    Raises:
+      UsageError: An unknown scenario, action, profile, learner or feature space, or one that does not fit the actions.
+    """
+    check_recipe(making.robot, making.recipe)
+    request, domain = checked(_request(making, making.zoo, (), ())), domains.load(making.domain)
+    for action in run_gathering.modelled_actions(making.domain):
+        feature_spaces(request, tuple(gathering.argument_names(domain, action)), Path(action))
+
+
 def make(making: Making) -> Iterator[Step]:
     """Gather and train all that is missing; yields progress. The models are in `making.zoo` at the end.
 
     Raises:
-      UsageError: An unknown scenario, profile, learner or feature space, too few episodes, or a model that an action
-        names and that could not be learned.
+      UsageError: See `check`; or too few episodes, or a model that an action names and that could not be learned.
     """
-    check_profile(making.domain, making.recipe.profile)
+    check(making)
     yield from _random_episodes(making)
     for number, each in enumerate(making.recipe.rounds):
         zoo = making.chooser(number)
@@ -137,16 +149,9 @@ def install(made: Path, zoo: Path, robot: str) -> None:
 
 
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
-    """Data sets of random episodes: action, number, folder, and whether each is beside an object.
-
-    Raises:
-      UsageError: The recipe names an action that has no model.
-    """
+    """Data sets of random episodes: action, number, folder, and whether each is beside an object."""
     recipe, declared = making.recipe, domains.load(making.domain).actions
     actions = run_gathering.modelled_actions(making.domain)
-    for each in recipe.random:
-        if each.action not in actions:
-            raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
     wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
     if recipe.beside:
         contexts = {action: declared[action].context for action in actions}

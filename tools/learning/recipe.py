@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import tomllib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
+from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
 
 RECIPE = "recipe.toml"
+MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,21 +97,38 @@ def read_recipe(path: Path) -> Recipe:
     """Read a recipe.
 
     Raises:
-      UsageError: The file is missing, not TOML, or an entry is unknown, of a wrong type or not positive.
+      UsageError: The file is missing, not TOML, or an entry is unknown, of a wrong type or out of range.
     """
-    try:
-        table = tomllib.loads(path.read_text())
-    except OSError:
-        raise UsageError(
-            f"{path}: no recipe, expected one with at least `episodes = NUMBER` (docs/learning.md)"
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise UsageError(f"{path}: not a recipe ({error}), expected TOML") from None
+    table = read_toml(path, "a recipe with at least `episodes = NUMBER` (docs/learning.md)")
     if "episodes" not in table:
         raise UsageError(f"{path}: lacks `episodes`, the number of random episodes of each action")
     recipe = from_table(Recipe, table, str(path))
-    chosen = (number for each in recipe.rounds for number in (each.episodes, each.pool))
-    for count in (recipe.episodes, *(each.episodes for each in recipe.random), *chosen):
-        if count < 1:
-            raise UsageError(f"{path}: a number of episodes is {count}, expected at least 1")
+    faults = list(_faults(recipe))
+    if faults:
+        raise UsageError(f"{path}: {'; '.join(faults)}")
     return recipe
+
+
+def _faults(recipe: Recipe) -> Iterator[str]:
+    """Values that are out of range, all of them."""
+    for name, seed in (("seed", recipe.seed), ("training.seed", recipe.training.seed)):
+        if not 0 <= seed <= MAX_SEED:
+            yield f"{name} is {seed}, expected 0 to {MAX_SEED}"
+    for name, count in (("beside", recipe.beside), ("objects", recipe.objects)):
+        if count < 0:
+            yield f"{name} is {count}, expected at least 0"
+    numbers = [number for each in recipe.rounds for number in (each.episodes, each.pool)]
+    for count in (recipe.episodes, *(each.episodes for each in recipe.random), *numbers):
+        if count < 1:
+            yield f"a number of episodes is {count}, expected at least 1"
+    yield from _repeated("random", [each.action for each in recipe.random])
+    for each in recipe.rounds:
+        if not each.scenarios:
+            yield "rounds.scenarios is empty, expected at least one"
+        yield from _repeated("rounds.scenarios", each.scenarios)
+
+
+def _repeated(name: str, words: Sequence[str]) -> Iterator[str]:
+    yield from (
+        f"{name}: '{word}' is there twice, expected once" for word in sorted({w for w in words if words.count(w) > 1})
+    )

@@ -11,7 +11,7 @@ from typing import Any
 
 from tailor.schemas.installed import robot_names
 from tailor.tools.cli.number_checks import processes
-from tailor.tools.learning.making import Making, install, make
+from tailor.tools.learning.making import Making, check, install, make
 from tailor.tools.learning.recipe import read_recipe, recipe_path
 from tailor.tools.learning.steps import Step, show
 from tailor.tools.learning.target_zoo import target_zoo
@@ -54,7 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _making(robot: str, arguments: argparse.Namespace) -> Making:
     recipe = read_recipe(arguments.recipe or recipe_path(robot))
     command = f"tailor make-models {robot}" + (f" --recipe {arguments.recipe}" if arguments.recipe else "")
-    return Making(robot, recipe, arguments.work, arguments.jobs, command)
+    making = Making(robot, recipe, arguments.work, arguments.jobs, command)
+    check(making)  # of every robot, before the models of the first one are made
+    return making
 
 
 def _made(making: Making, zoo: Path, quiet: bool) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.learning import making as making_module
-from tailor.tools.learning.making import Making, install, make
+from tailor.tools.learning.making import Making, check, install, make
 from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
@@ -131,13 +131,26 @@ def test_installing_replaces_all_models_of_the_robot_and_nothing_else(tmp_path: 
     assert left == {"a/go/duration.onnx": "new", "a/recipe.toml": "kept", "b/go/duration.onnx": "kept"}
 
 
+REACH = "[[random]]\naction = 'reach'\nepisodes = 9\n"
+ROUND = "[[rounds]]\nsource = 'active'\nepisodes = 1\nscenarios = [{}]"
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "lacks `episodes`"),
         ("episodes = 0", "a number of episodes is 0, expected at least 1"),
         ("episodes = 'many'", "'episodes' is 'many', expected int"),
-        ("episodes = [", "not a recipe"),
+        ("episodes = [", "not TOML"),
+        ("episodes = " + "[" * 5000, "nested too deeply, expected a recipe"),
+        ("episodes = 9\nseed = -1", "seed is -1, expected 0 to 1000000000"),
+        ("episodes = 9\n[training]\nseed = -1", "training.seed is -1, expected 0 to 1000000000"),
+        ("episodes = 9\n[training]\nseed = 4294967295", "training.seed is 4294967295, expected 0 to 1000000000"),
+        ("episodes = 9\nbeside = -5\nobjects = -1", "beside is -5, expected at least 0; objects is -1, expected at"),
+        ("episodes = 9\n[[random]]\naction = 'reach'", "'random.episodes' is missing, expected int"),
+        (f"episodes = 9\n{2 * REACH}", "random: 'reach' is there twice, expected once"),
+        ("episodes = 9\n" + ROUND.format(""), "rounds.scenarios is empty, expected at least one"),
+        ("episodes = 9\n" + ROUND.format("'a', 'b', 'a'"), "rounds.scenarios: 'a' is there twice, expected once"),
         ("episodes = 9\n[[rounds]]\nsource = 'guess'\nscenarios = []\nepisodes = 1", "'rounds.source' is 'guess'"),
         ("episodes = 9\nepochs = 3", "unknown key 'epochs'"),
         ("episodes = 9\n[[random]]\naction = 'reach'\nepisodes = 0", "a number of episodes is 0"),
@@ -151,6 +164,41 @@ def test_a_recipe_with_errors_is_refused_in_one_line(tmp_path: Path, text: str, 
         read_recipe(path)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_recipe_that_is_not_utf_8_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "recipe.toml").write_bytes(b"# \xe9\nepisodes = 9")
+    with pytest.raises(UsageError, match=r"not UTF-8 \(byte 0xe9 at position 2\), expected a recipe"):
+        read_recipe(tmp_path / "recipe.toml")
+
+
+@pytest.mark.parametrize(
+    ("robot", "text", "message"),
+    [
+        ("agilo", ROUND.format("'approach', 'nope'"), "no scenario 'nope' in soccer, expected one of: "),
+        ("agilo", REACH, "random episodes of 'reach', expected one of: "),
+        ("agilo", "profile = 'x'", "no profile 'x' of soccer's body, expected one of: "),
+        ("agilo", "[training]\nlearner = 'nope'", "nope"),
+        ("agilo", "[training]\nfeatures = 'nope'", "no feature space 'nope'"),
+        ("agilo", "[training]\nfeatures = 'joints'", "approachBall: arguments are x y phi v xg"),
+        ("powercube", ROUND.format("'nope'"), "no scenario"),
+    ],
+)
+def test_names_in_a_recipe_are_checked_before_anything_is_gathered(
+    tmp_path: Path, robot: str, text: str, message: str, capsys
+) -> None:
+    (tmp_path / "recipe.toml").write_text(f"episodes = 9\n{text}")
+    recipe, zoo, work = (str(tmp_path / name) for name in ("recipe.toml", "zoo", "work"))
+    flags = ["--recipe", recipe, "--zoo", zoo, "--work", work]
+    assert main(["make-models", robot, *flags]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+    assert not (tmp_path / "work").exists()
+
+
+def test_recipes_that_ship_pass_all_checks(tmp_path: Path) -> None:
+    for robot in robot_names():
+        check(Making(robot, read_recipe(recipe_path(robot)), tmp_path, 1, "make"))
 
 
 def test_every_robot_that_ships_has_a_recipe_of_at_most_3000_random_episodes() -> None:

@@ -1,0 +1,27 @@
+"""Checks of a recipe against its robot, before anything is gathered: hours later, the same error would cost them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning import gathering, run_gathering
+from tailor.tools.learning.recipe import Recipe
+from tailor.tools.lockstep.bodies import check_profile
+
+
+def check_recipe(robot: str, recipe: Recipe) -> None:
+    """Check the names in a recipe: of the profile, actions and scenarios.
+
+    Raises:
+      UsageError: The robot has none of a name.
+    """
+    domain = gathering.domain_of(robot)
+    check_profile(domain, recipe.profile)
+    actions = run_gathering.modelled_actions(domain)
+    for each in recipe.random:
+        if each.action not in actions:
+            raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
+    for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
+        domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
