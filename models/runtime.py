@@ -24,6 +24,7 @@ from tailor.models.cards.card import (
     sha256_of,
 )
 from tailor.models.cards.checks import check_identity, check_place, check_ranges
+from tailor.models.features.spaces import feature_spaces
 from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session
 from tailor.schemas.errors import UsageError
 
@@ -48,7 +49,7 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
         raise UsageError(f"{path}: sha256 is {sha256_of(content)[:12]}…, expected {card['sha256'][:12]}… by its card")
     session = _session(content, path)
     check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
-    bounds = model_bounds(content, str(card["features"]), len(card.get("feature_units", ())))
+    bounds = model_bounds(content, str(card["features"]), _number_of_features(card, path))
     loaded = _wrapped(session, card, path, bounds)
     _check_golden(loaded, card, path)
     return loaded
@@ -107,6 +108,19 @@ def _session(content: bytes, path: Path) -> Any:
         return open_session(content)
     except Exception as error:  # onnxruntime's exceptions have no common base
         raise UsageError(f"{path}: not a model that onnxruntime can run ({str(error).splitlines()[0]})") from None
+
+
+def _number_of_features(card: Card, path: Path) -> int:
+    """Number of features; that of the card alone if the package that declares the feature space is not installed."""
+    space, units = feature_spaces().get(card["features"]), card.get("feature_units")
+    if space is None:
+        return len(units or ())
+    if units is not None and len(units) != len(space.features):
+        raise UsageError(
+            f"{card_path(path)}: card's feature_units has {len(units)} entries, "
+            f"expected {len(space.features)} by its features '{space.name}'"
+        )
+    return len(space.features)
 
 
 def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -> OnnxModel:

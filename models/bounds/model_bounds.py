@@ -161,7 +161,8 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
       features: Number of features.
 
     Returns:
-      The bounds; None if the model is not made of trees and networks, or the feature space has no intervals.
+      The bounds; None if the model is not made of trees and networks as the export writes them, or the feature space
+      has no intervals.
     """
     if space not in FEATURE_SPANS:
         return None
@@ -174,6 +175,9 @@ def model_bounds(model: bytes, space: str, features: int) -> ModelBounds | None:
     if boxes is None and networks is None:
         return None
     share = float(boxes is not None) if networks is None or boxes is None else networks.trees_share
-    spread = interval_boxes(graph, features)
+    try:
+        spread = interval_boxes(graph, features)
+    except (ValueError, KeyError, IndexError):
+        return None
     trees, widths = (None if part is None else LeafBounds(part) for part in (boxes, spread))
     return ModelBounds(space, trees, widths, networks, share)

@@ -16,7 +16,9 @@ def arguments_error(value: Any) -> str:
         named = isinstance(each, dict) and all(isinstance(each.get(key), str) for key in ("name", "unit"))
         if not named or not is_range([each.get("lower"), each.get("upper")]):
             return f"argument {shown(each)}, expected name, unit, and numbers lower <= upper"
-    return ""
+    names = [each["name"] for each in value]
+    repeated = sorted({name for name in names if names.count(name) > 1})
+    return f"argument {repeated[0]} is there twice, expected once" if repeated else ""
 
 
 def is_number(value: Any) -> bool:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
+from tailor.models.episodes.part_reader import WORK, read_part
 from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
 
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHORT_EPISODES = 1000  # of a single tick, in one row group
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
-PER_EPISODE = ("episode", "success", "finished", "failure")  # columns of a part beside the numbers to learn from
 UNOBSERVED = "unobserved"  # "failure" of an episode whose success was not observed
 
 
@@ -113,7 +113,7 @@ def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
         "tick": np.arange(count, dtype=np.int32),
         **{name: episode.ticks[:, k] for k, name in enumerate(names)},
         **{f"asked_{name}": np.full(count, episode.arguments[k]) for k, name in enumerate(names)},
-        "work_j": np.full(count, np.nan) if episode.work_j is None else episode.work_j,
+        WORK: np.full(count, np.nan) if episode.work_j is None else episode.work_j,
         "duration_s": np.full(count, episode.duration_s),
         "success": np.full(count, episode.success),
         "finished": np.full(count, episode.finished),
@@ -148,35 +148,12 @@ def read_data_set(folder: Path) -> DataSet:
     digest = hashlib.sha256()
     for path in sorted(folder.glob("part-*.parquet")):
         digest.update(path.read_bytes())
-        episodes.extend(_episodes(_read_part(path, names), names, bool(manifest.get("on_policy"))))
+        episodes.extend(_episodes(read_part(path, names), names, bool(manifest.get("on_policy"))))
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
         repeated = next(number for number, count in Counter(numbers).items() if count > 1)
         raise UsageError(f"{folder}: holds episode {repeated} twice, expected once: training and test would share it")
     return DataSet(manifest, tuple(episodes), digest.hexdigest())
-
-
-def _read_part(path: Path, names: Sequence[str]) -> pa.Table:
-    """Read and check one part.
-
-    Raises:
-      UsageError: It cannot be read, is damaged, lacks a column, or holds a value that is not a finite number.
-    """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        table = pq.read_table(path, page_checksum_verification=True)
-    except (pa.ArrowException, OSError) as error:
-        raise UsageError(f"{path}: cannot be read ({error}), expected a part of a data set") from None
-    numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
-    missing = [name for name in (*PER_EPISODE, *numbers) if name not in table.column_names]
-    if missing or not table.num_rows:
-        raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
-    for name in numbers:
-        if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
-            raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
-    return table
 
 
 def merge(sets: Sequence[DataSet]) -> DataSet:
@@ -222,7 +199,7 @@ def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Ep
     ticks = np.column_stack([column[name] for name in names])
     requested = np.column_stack([column[f"asked_{name}"] for name in names])
     numbers = column["episode"]
-    work = column.get("work_j", np.full(len(numbers), np.nan))  # older data sets lack the column
+    work = column.get(WORK, np.full(len(numbers), np.nan))  # older data sets lack the column
     starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
     return [
         Episode(

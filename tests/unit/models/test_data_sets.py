@@ -63,6 +63,22 @@ def change(column: str, value: object) -> Callable[[Path], None]:
     return apply
 
 
+def twice(path: Path) -> None:
+    table = pq.read_table(path)
+    pq.write_table(table.append_column("xg", table["xg"]), path)
+
+
+def change_all(column: str, value: list[object]) -> Callable[[Path], None]:
+    """Other cells of all episodes; each of them may have several ticks."""
+
+    def apply(path: Path) -> None:
+        table = pq.read_table(path)
+        cells = [value[number] for number in table["episode"].to_pylist()]
+        pq.write_table(table.set_column(table.column_names.index(column), column, pa.array(cells)), path)
+
+    return apply
+
+
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
@@ -73,6 +89,13 @@ def change(column: str, value: object) -> Callable[[Path], None]:
         (lambda path: pq.write_table(pq.read_table(path).slice(0, 0), path), "lacks rows"),
         (change("xg", None), "lacks xg"),
         (change("xg", float("nan")), "column xg holds values that are not finite numbers"),
+        (change_all("episode", ["x"] * 6), "column episode holds string, expected integers in every row"),
+        (change_all("episode", [float("nan")] * 6), "column episode holds double, expected integers in every row"),
+        (change_all("episode", [0, None, 2, 3, 4, 5]), "column episode holds int64, expected integers in every row"),
+        (change_all("success", ["no"] * 6), "column success holds string, expected true or false in every row"),
+        (change_all("failure", [1] * 6), "column failure holds int64, expected text in every row"),
+        (twice, "cannot be read .Multiple matches for"),
+        (change_all("work_j", ["x"] * 6), "column work_j holds string, expected numbers"),
     ],
 )
 def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], message: str) -> None:
@@ -89,6 +112,11 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         ("robot", 1, "robot is 1, expected a name"),
         ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
         ("arguments", [], "arguments is"),
+        (
+            "arguments",
+            2 * [{"name": "x", "unit": "m", "lower": 0, "upper": 1}],
+            "argument x is there twice, expected once",
+        ),
         ("arguments", [{"name": "x"}], "argument {'name': 'x'}, expected name, unit, and numbers lower <= upper"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 1, "upper": 0}], "expected name, unit, and numbers lower"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),

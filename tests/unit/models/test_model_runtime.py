@@ -172,6 +172,7 @@ NUMBERS = [0.5] * 32
         ("test", {}, "test's mae_s is None, expected a number"),
         ("learner", None, "learner is None, expected an object"),
         ("feature_units", None, "feature_units is None, expected an object"),
+        ("feature_units", {"d": "m"}, "feature_units has 1 entries, expected 7 by its features 'projective-periodic'"),
     ],
 )
 def test_a_card_whose_parts_are_of_another_shape_is_refused(zoo: Path, key: str, value: object, message: str) -> None:

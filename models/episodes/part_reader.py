@@ -1,0 +1,65 @@
+"""Reads the Parquet parts of a data set; they may come from others, so every column is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tailor.schemas.errors import UsageError
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+WORK = "work_j"  # older data sets lack it
+# columns beside the numbers to learn from: check of the type in pyarrow.types, and the type in words
+PER_EPISODE = {
+    "episode": ("is_integer", "integers"),
+    "success": ("is_boolean", "true or false"),
+    "finished": ("is_boolean", "true or false"),
+    "failure": ("is_string", "text"),
+}
+
+
+def read_part(path: Path, names: Sequence[str]) -> pa.Table:
+    """Read and check one part.
+
+    Args:
+      path: The file.
+      names: Names of the arguments.
+
+    Raises:
+      UsageError: It cannot be read, is damaged, lacks a column, or holds a value of another type.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        table = pq.read_table(path, page_checksum_verification=True)
+    except (pa.ArrowException, OSError) as error:
+        first = str(error).partition("\n")[0]  # others list the columns
+        raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
+    numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
+    missing = [name for name in (*PER_EPISODE, *numbers) if name not in table.column_names]
+    if missing or not table.num_rows:
+        raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
+    wanted = [*PER_EPISODE, *numbers, *({WORK} & set(table.column_names))]
+    checked = table.select(list(dict.fromkeys(wanted)))
+    _check_columns(checked, numbers, path)
+    return checked
+
+
+def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:
+    """Raise UsageError if a column holds values of another type, or none in some row."""
+    import pyarrow as pa
+
+    for name in numbers:
+        if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
+            raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
+    for name, (check, expected) in PER_EPISODE.items():
+        if not getattr(pa.types, check)(table[name].type) or table[name].null_count:
+            raise UsageError(f"{path}: column {name} holds {table[name].type}, expected {expected} in every row")
+    if WORK in table.column_names and not pa.types.is_floating(table[WORK].type):
+        raise UsageError(f"{path}: column {WORK} holds {table[WORK].type}, expected numbers")
