@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from tailor.models.cards.episodes_shape import episodes_error
 from tailor.models.cards.json_shape import arguments_error, is_number, is_range
 from tailor.schemas.parsed_files import shown
 
@@ -60,12 +61,10 @@ def _golden_error(card: Mapping[str, Any]) -> str:
 
 
 def _summary_error(card: Mapping[str, Any]) -> str:
-    """First error in the entries that lists of models show."""
+    """First error in the entries that lists and checks of models need."""
     if not isinstance(card["learner"].get("name"), str):
         return f"learner's name is {shown(card['learner'].get('name'))}, expected text"
-    if not is_number(card["episodes"].get("count")):
-        return f"episodes' count is {shown(card['episodes'].get('count'))}, expected a number"
     for name in TEST_FIGURES[card["kind"]]:
         if not is_number(card["test"].get(name)):
             return f"test's {name} is {shown(card['test'].get(name))}, expected a number"
-    return ""
+    return episodes_error(card["episodes"])

@@ -26,6 +26,11 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
+def is_count(value: Any) -> bool:
+    """Whether a value is a whole number, at least 0."""
+    return type(value) is int and value >= 0
+
+
 def is_range(value: Any) -> bool:
     """Whether a value is a pair of finite numbers, the lower one first."""
     return isinstance(value, list) and len(value) == 2 and all(map(is_number, value)) and value[0] <= value[1]

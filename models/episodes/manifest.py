@@ -8,15 +8,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from tailor.models.cards.json_shape import arguments_error
+from tailor.models.cards.json_shape import arguments_error, is_count
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json, shown
 
 MANIFEST = "manifest.json"
-
-
-def _is_count(value: Any) -> bool:
-    return type(value) is int and value >= 0
 
 
 def _are_names(value: Any) -> bool:
@@ -28,8 +24,8 @@ def _is_context(value: Any) -> bool:
 
 
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that resuming and training compute with
-    "episodes": (_is_count, "a whole number"),
-    "objects": (lambda value: _is_count(value) and value > 0, "a whole number, at least 1"),
+    "episodes": (is_count, "a whole number"),
+    "objects": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
     "scenarios": (_are_names, "a list of names"),
     "recordings": (_are_names, "a list of names"),
     "context": (_is_context, "names of columns, and a failure"),
