@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tailor.models.cards.episodes_shape import episodes_error
-from tailor.models.cards.json_shape import arguments_error, is_number, is_range
+from tailor.models.cards.json_shape import are_rows, arguments_error, is_number, is_range
 from tailor.schemas.parsed_files import shown
 
 OUTPUTS = {  # the second form is that of older models, without intervals
@@ -50,8 +50,7 @@ def _outputs_error(card: Mapping[str, Any]) -> str:
 
 def _golden_error(card: Mapping[str, Any]) -> str:
     width, rows = len(card["arguments"]), card["golden"].get("arguments")
-    complete = isinstance(rows, list) and rows and all(isinstance(row, list) and len(row) == width for row in rows)
-    if not complete or not all(is_number(value) for row in rows for value in row):
+    if not rows or not are_rows(rows, width):
         return f"golden arguments are {shown(rows)}, expected rows of {width} numbers"
     for name in card["outputs"]:
         values = card["golden"].get(name)
@@ -67,4 +66,14 @@ def _summary_error(card: Mapping[str, Any]) -> str:
     for name in TEST_FIGURES[card["kind"]]:
         if not is_number(card["test"].get(name)):
             return f"test's {name} is {shown(card['test'].get(name))}, expected a number"
-    return episodes_error(card["episodes"])
+    return _pictures_error(card["test"]) or episodes_error(card["episodes"])
+
+
+def _pictures_error(test: Mapping[str, Any]) -> str:
+    """First error in the entries that pictures of models need; they may be missing."""
+    for name, width in (("learning_curve", 2), ("reliability", 3)):
+        if name in test and not are_rows(test[name], width):
+            return f"test's {name} is {shown(test[name])}, expected rows of {width} numbers"
+    if "learning_curve" in test and not is_range(test.get("mae_ci95")):
+        return f"test's mae_ci95 is {shown(test.get('mae_ci95'))}, expected two numbers, the lower one first"
+    return ""

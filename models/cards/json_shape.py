@@ -26,6 +26,12 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
+def are_rows(value: Any, width: int) -> bool:
+    """Whether a value is a list of lists of that many finite numbers."""
+    rows = isinstance(value, list) and all(isinstance(row, list) and len(row) == width for row in value)
+    return rows and all(is_number(each) for row in value for each in row)
+
+
 def is_count(value: Any) -> bool:
     """Whether a value is a whole number, at least 0."""
     return type(value) is int and value >= 0

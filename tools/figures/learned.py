@@ -41,7 +41,7 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
         region = learned_regions.region_of(card)
         if region is not None:
             pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model, region)}
-        if "learning_curve" in card["test"]:
+        if card["test"].get("learning_curve"):
             pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
         target = REGRESSION_TARGETS[card["kind"]]
         observed = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
@@ -110,7 +110,7 @@ def flat_from(curve: Sequence[Sequence[float]], high: float) -> int:
 
 def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
     rows = success_examples([e for e in episodes if e.failure != UNOBSERVED], 1)
-    predicted, observed, count = zip(*model.card["test"].get("reliability", [(0.0, 0.0, 1)]), strict=True)
+    predicted, observed, count = zip(*(model.card["test"].get("reliability") or [(0.0, 0.0, 1)]), strict=True)
     probability = model.probability(rows.arguments)
     axes, right = figure.subplots(1, 2)
     axes.plot([0, 1], [0, 1], color="black", lw=1)

@@ -170,6 +170,8 @@ NUMBERS = [0.5] * 32
         ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success"),
         ("sha256", None, "sha256 is None, expected text"),
         ("test", {}, "test's mae_s is None, expected a number"),
+        ("test", {"mae_s": 1, "mean_duration_s": 1, "learning_curve": 5}, "learning_curve is 5, expected rows of 2"),
+        ("test", {"mae_s": 1, "mean_duration_s": 1, "learning_curve": [[1, 2]]}, "mae_ci95 is None, expected two"),
         ("learner", None, "learner is None, expected an object"),
         ("episodes", {"count": "x"}, "episodes' count is 'x', expected a number"),
         ("episodes", {"count": 9, "sources": [5]}, "episodes' sources are [5], expected objects"),
