@@ -175,13 +175,14 @@ def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path
       Number of episodes by action.
 
     Raises:
-      UsageError: A file is not a recording of an executive's run, none holds a finished action, or the folder holds
-        episodes already; nothing is written then.
+      UsageError: A file is not a recording of an executive's run, none holds a finished action, two hold the same
+        one, or the folder holds episodes already; nothing is written then.
     """
     robot = domains.load(domain)
     cut = [EpisodeExtractor(robot).read(_messages(path, _types_of(robot))) for path in recordings]
     if not any(cut):
         raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
+    _check_distinct(cut, recordings)
     about = {"source": "recordings", "recordings": [path.name for path in recordings]}
     counts = Counter(action for one in cut for action, _ in one)
     prepare(domain, folder, sorted(counts), about, recordings, resume=False)
@@ -191,6 +192,17 @@ def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path
         write(domain, folder, f"{number:06d}", numbered)
         number += len(one)
     return {action: counts[action] for action in modelled_actions(domain)}
+
+
+def _check_distinct(cut: Sequence[Sequence[tuple[str, Episode]]], recordings: Sequence[Path]) -> None:
+    """Raise UsageError if two recordings, whatever their names, hold the same episode: test and training share it."""
+    known: dict[tuple[str, bytes], Path] = {}
+    for path, one in zip(recordings, cut, strict=True):
+        keys = [(action, episode.ticks.tobytes()) for action, episode in one]
+        for key in keys:
+            if key in known:
+                raise UsageError(f"{path}: holds the same {key[0]} as {known[key]}, expected each run once")
+        known |= dict.fromkeys(keys, path)
 
 
 def _types_of(domain: Domain) -> frozenset[type[Message]]:

@@ -174,6 +174,15 @@ def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> N
 RECORDING = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach-dribble.mcap"
 
 
+def test_a_recording_that_is_named_twice_is_refused(tmp_path: Path, capsys) -> None:
+    copy = shutil.copy(RECORDING, tmp_path / "copy.mcap")
+    for twice in (RECORDING, copy):
+        assert main(["gather", "agilo", "--from", str(RECORDING), str(twice), "--out", str(tmp_path / "x")]) == 2
+        message = f"{twice}: holds the same approachBall as {RECORDING}, expected each run once"
+        assert message in capsys.readouterr().err
+    assert not (tmp_path / "x").exists()
+
+
 def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_path: Path, capsys) -> None:
     cut = ["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]
     assert main(cut) == 0
