@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import os
 import re
 import sys
@@ -89,6 +90,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(["tailor", *arguments[:1]])
     is_supervised = "NOTIFY_SOCKET" in os.environ  # a process takes it out
+    _replace_what_cannot_be_printed()
     try:
         try:
             return _run(arguments)
@@ -110,6 +112,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         path = "" if error.filename is None else f"{error.filename}: "
         _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}')}")
         return 1 if error.filename is None else 2
+
+
+def _replace_what_cannot_be_printed() -> None:
+    """Let "?" stand for a character that is missing in the encoding of the output, such as ° in ASCII.
+
+    Python would end the command with a traceback. Names of files that are no UTF-8 are kept, where Python keeps them.
+    """
+    output = sys.stdout
+    if isinstance(output, io.TextIOWrapper) and (output.errors, output.encoding) != ("surrogateescape", "utf-8"):
+        output.reconfigure(errors="replace")
 
 
 def _run(arguments: list[str]) -> int:

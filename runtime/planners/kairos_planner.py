@@ -25,7 +25,7 @@ def main(seconds: str, tick: str, domain: str, problem: str) -> int:
     )
     if float(tick):
         options["epsilon"] = float(tick)
-    result = kairos.solve(Path(domain).read_text(), Path(problem).read_text(), threads=1, **options)
+    result = kairos.solve(Path(domain).read_text("utf-8"), Path(problem).read_text("utf-8"), threads=1, **options)
     print(result.plan.to_string() if result.plan is not None else f"; {result.status}")
     return 0 if result.plan is not None else 1
 

@@ -74,7 +74,7 @@ def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
         if arguments.role:
             write_roles(arguments.keys, {**roles, name: arguments.role})
         if arguments.endpoint:
-            (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder))
+            (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder), encoding="utf-8")
             (folder / SESSION).chmod(0o600)
     except OSError as error:
         raise UsageError(f"{error.filename}: {error.strerror}, expected a place for keys") from error

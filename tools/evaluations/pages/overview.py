@@ -50,7 +50,7 @@ def write_overview(folder: Path, names: Sequence[str]) -> Path:
 def _section(folder: Path, name: str) -> str:
     """Title with a link, time of the run, main figures of the first rows."""
     file = folder / f"{name}.json"
-    report = json.loads(file.read_text())
+    report = json.loads(file.read_text("utf-8"))
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(file.stat().st_mtime))
     every: list[dict[str, Any]] = report["rows"]
     rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
