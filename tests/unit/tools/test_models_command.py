@@ -107,6 +107,17 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
     [
         (["models", "show", "agilo/fly"], "no such file"),
         (["models", "list", "--zoo", "nowhere"], "no action models"),
+        (["models", "rules", "agilo/goToPose", "--json"], "rules takes no --json"),
+        (["models", "list", "--data", "x", "--of", "bag:1"], "list takes no --data, --of"),
+        (["models", "check", "--distilled", "--out", "x"], "check takes no --distilled, --out"),
+        (
+            ["models", "plot", "agilo/goToPose", "--data", "nowhere"],
+            "nowhere: no data sets of these models, expected go",
+        ),
+        (
+            ["models", "rules", "agilo/goToPose", "--data", "nowhere"],
+            "expected goToPose/manifest.json (`tailor gather`",
+        ),
         (["train", "agilo", "--data", "nowhere"], "no data sets"),
         (["train", "agilo", "--failure-learner", "magic"], "learner 'magic' is unknown for success"),
         (["train", "agilo", "--energy-features", "magic"], "no feature space 'magic'"),

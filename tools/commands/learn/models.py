@@ -14,6 +14,7 @@ from rich.table import Column, Table
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import Card
 from tailor.models.cards.checks import check_ranges
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
 from tailor.models.runtime import ZOO, load_model
 from tailor.schemas.errors import UsageError
@@ -38,6 +39,14 @@ examples:
 MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), energy or success. ROBOT alone stands for all its models; no
 MODEL stands for all models in the zoo."""
 VERBS = ("list", "show", "rules", "plot", "check", "push", "pull")
+TAKEN_BY = {  # flag -> verbs; the others would ignore it
+    "--json": ("list", "show", "check", *sharing.VERBS),
+    "--data": ("rules", "plot", *sharing.VERBS),
+    "--of": ("rules",),
+    "--distilled": ("rules",),
+    "--out": ("plot",),
+}
+OUT = Path("out/models")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -56,14 +65,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     which.add_argument(
         "--distilled", action="store_true", help="rules: a tree distilled from the model (default if it has several)"
     )
-    parser.add_argument("--out", type=Path, default=Path("out/models"), help="plot: folder (default: %(default)s)")
+    parser.add_argument("--out", type=Path, help=f"plot: folder (default: {OUT})")
     parser.add_argument("--json", action="store_true", help="list, show, check, push, pull: print JSON")
     sharing.configure(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the verb; exit code 0, or 1 if a check fails."""
-    sharing.check_flags(arguments)
+    _check_flags(arguments)
     if arguments.verb in sharing.VERBS:
         return sharing.run(arguments)
     arguments.zoo = arguments.zoo or _zoo_of(arguments.models)
@@ -71,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.verb == "check":
         return _check(names, arguments)
     loaded = [load_model(name, arguments.zoo) for name in names]
+    _check_data(arguments.data, {model.card["action"] for model in loaded})
     if arguments.verb == "list":
         _list([model.card for model in loaded], arguments.json)
     elif arguments.verb == "show":
@@ -83,9 +93,29 @@ def run(arguments: argparse.Namespace) -> int:
         from tailor.tools.figures import learned
 
         for model in loaded:
-            for path in learned.draw(model, arguments.data, arguments.out):
+            for path in learned.draw(model, arguments.data, arguments.out or OUT):
                 print(path)
     return 0
+
+
+def _check_flags(arguments: argparse.Namespace) -> None:
+    """Refuse flags that the verb does not take, and would ignore.
+
+    Raises:
+      UsageError: There is one; the message names it.
+    """
+    sharing.check_flags(arguments)
+    given = {f"--{name}" for name in ("json", "data", "of", "distilled", "out") if getattr(arguments, name)}
+    wrong = [flag for flag, verbs in TAKEN_BY.items() if flag in given and arguments.verb not in verbs]
+    if wrong:
+        raise UsageError(f"{arguments.verb} takes no {', '.join(wrong)} (see tailor models --help)")
+
+
+def _check_data(data: Path | None, actions: set[str]) -> None:
+    """Raise UsageError if a folder of data sets is named that has none of these actions."""
+    if data is not None and not any((data / action / MANIFEST).exists() for action in actions):
+        expected = ", ".join(f"{action}/{MANIFEST}" for action in sorted(actions))
+        raise UsageError(f"{data}: no data sets of these models, expected {expected} (`tailor gather` writes them)")
 
 
 def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
