@@ -114,6 +114,10 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = _chosen(
         names, [flag for flag in flags if flag != RESUME], everything
     )  # raises on a wrong flag before anything runs
+    if RESUME in flags and chosen and chosen[0][2].report is None:
+        raise UsageError(
+            "--resume skips evaluations whose page is in the report's folder, expected --report DIR with it"
+        )
     with working_on(chosen[0][2].on if chosen else None, _work_of(chosen)):
         return _run_all(chosen, RESUME in flags, everything)
 

@@ -104,6 +104,12 @@ def test_an_evaluation_of_another_domain_is_a_usage_error(capsys):
     assert "first has: soccer" in capsys.readouterr().err
 
 
+def test_resuming_without_a_folder_of_pages_would_run_everything_again(capsys):
+    assert main(["evaluate", "first", "--resume"]) == 2
+    assert "expected --report DIR with it" in capsys.readouterr().err
+    assert CALLS == []
+
+
 def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, capsys):
     main(["evaluate", "first", "--report", str(tmp_path)])
     text = write_overview(tmp_path, ["first", "second"]).read_text()
