@@ -34,6 +34,7 @@ from tailor.tools.learning.training_request import (
     feature_spaces,
 )
 from tailor.tools.learning.training_run import checked, train_models
+from tailor.tools.parallel.pool import Processes
 
 WHOLE = "whole"  # marker of a folder of models, written last
 CHOOSING = ("duration", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
@@ -205,14 +206,13 @@ def _trained(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...]
 
 def _train(request: TrainingRequest, jobs: int) -> None:
     """Train each model in a process of its own: equal bits for any number of jobs."""
-    from joblib import Parallel, delayed
-
     each = [
         dataclasses.replace(request, actions=(action,), kinds=(kind,))
         for kind in request.kinds or KINDS
         for action in data_sets(request)
     ]
-    Parallel(n_jobs=jobs)(delayed(train_models)(one) for one in each)
+    for _ in Processes().completed(train_models, [(one,) for one in each], jobs):
+        pass
 
 
 def _request(making: Making, zoo: Path, data: tuple[Path, ...], kinds: tuple[str, ...]) -> TrainingRequest:

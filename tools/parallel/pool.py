@@ -6,6 +6,8 @@ again if a worker is killed. Whoever iterates over the results writes them.
 
 from __future__ import annotations
 
+import signal
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -35,12 +37,32 @@ class Processes:
 
     def completed(self, part: Part, calls: Sequence[tuple[Any, ...]], jobs: int) -> Iterator[Numbered]:
         """See `Pool.completed`; runs on the active joblib backend."""
+        from multiprocessing import resource_tracker
+
         from joblib import Parallel, delayed
 
+        if jobs != 1:
+            resource_tracker.ensure_running()  # starting it with the first worker, it would let interrupts through
+        warnings.filterwarnings("ignore", ".*adjusting the input task")  # an interrupted command tells what it kept
         # in batches of one: a result that waits for others of its batch is lost with the process
         parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
-        running: Iterator[Numbered] = parallel(delayed(_numbered)(k, part, call) for k, call in enumerate(calls))
+        with _holding_interrupts():
+            running: Iterator[Numbered] = parallel(delayed(_numbered)(k, part, call) for k, call in enumerate(calls))
         return running
+
+
+@contextmanager
+def _holding_interrupts() -> Iterator[None]:
+    """Within the context, SIGINT waits; processes and threads that start there never receive it.
+
+    Ctrl-C reaches every process of a terminal. This one ends the others, which would print a traceback each: blocked
+    from their first instruction on, since they would fail while they import, too.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _IN_USE: ContextVar[Pool] = ContextVar("pool", default=Processes())  # noqa: B039 (immutable: it has no state)

@@ -1,0 +1,51 @@
+"""Ctrl-C reaches all processes of a terminal; only the command itself reacts, and ends its workers."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from tailor.runtime.processes.child import tailor
+from tailor.tools.parallel.pool import completed, in_order
+from tests.support.bus_system import ROOT
+from tests.support.patience import PATIENCE_S
+
+WORKER = b"popen_loky"
+
+
+def is_blocked(_: int) -> bool:
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def workers_of(pid: int) -> list[int]:
+    """Processes of a pool, from their first instruction on."""
+    found = []
+    with contextlib.suppress(OSError):  # a process that ends
+        for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+            if WORKER in Path(f"/proc/{child}/cmdline").read_bytes():
+                found.append(int(child))
+    return found
+
+
+def test_an_interrupt_is_for_the_process_that_waits() -> None:
+    assert in_order(completed(is_blocked, [(0,), (1,)], 2)) == [True, True]
+    assert not is_blocked(0)
+
+
+def test_workers_that_are_interrupted_while_they_start_print_nothing(tmp_path: Path) -> None:
+    command = tailor(
+        "gather", "agilo", "goToPose", "--episodes", "500", "--jobs", "2", "--out", str(tmp_path), "--json"
+    )
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT, start_new_session=True)
+    deadline = time.monotonic() + PATIENCE_S
+    while not workers_of(running.pid):
+        assert time.monotonic() < deadline
+        assert running.poll() is None
+    os.killpg(running.pid, signal.SIGINT)
+    _, errors = running.communicate(timeout=PATIENCE_S)
+    assert running.returncode == 130
+    assert errors.replace("\n", "").replace(" ", "") == f"{tmp_path}/goToPose:kept0of500;--resumecontinues"
