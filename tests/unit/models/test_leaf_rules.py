@@ -40,7 +40,7 @@ def test_what_is_not_a_number_meets_no_rule() -> None:
 
 
 def test_a_shipped_model_of_trees_has_a_rule_for_whatever_it_is_asked() -> None:
-    model = load_model("powercube/reach/duration")
+    model = load_model("b21/reach/duration")
     space = feature_space(model.card["features"])
     for row in space(np.array(model.card["golden"]["arguments"])):
         assert applied_rule(model.bounds.trees.boxes, row, space.features, "s").startswith("if ")

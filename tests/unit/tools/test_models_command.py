@@ -81,7 +81,7 @@ def test_rules_of_a_shipped_model_say_how_far_they_are_off(capsys) -> None:
     assert rule.startswith("if ")
 
 
-@pytest.mark.parametrize("name", ["powercube/reach", "agilo/approachBall/success"])
+@pytest.mark.parametrize("name", ["b21/reach", "agilo/approachBall/success"])
 def test_rules_of_any_single_tree_can_be_asked_for(name: str, capsys) -> None:
     assert main(["models", "rules", name, "--of", "bag:3"]) == 0
     first, _, rule, then, *_ = capsys.readouterr().out.splitlines()
