@@ -1,6 +1,7 @@
 """tailor models, train and evaluate: what they say, and that they refuse in one line."""
 
 import json
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -57,6 +58,14 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert {"model", "learner", "episodes", "test"} <= json.loads(capsys.readouterr().out)[0].keys()
     assert main(["models", "show", "agilo/goToPose", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["kind"] == "duration"
+
+
+def test_a_card_with_a_deep_entry_is_shown_in_part(tmp_path: Path, capsys) -> None:
+    folder = shutil.copytree(runtime.ZOO / "agilo" / "goToPose", tmp_path / "agilo" / "goToPose")
+    card = folder / "duration.card.json"
+    card.write_text(card.read_text().replace("{", '{"deep": ' + "[" * 600 + "]" * 600 + ",", 1))
+    assert main(["models", "show", "agilo/goToPose", "--zoo", str(tmp_path)]) == 0
+    assert "deep: [[[[[[[[[[...]]]]]]]]]]" in capsys.readouterr().out
 
 
 def test_a_robot_s_name_stands_for_all_its_models(capsys) -> None:

@@ -197,13 +197,16 @@ def _show(card: Card, as_json: bool) -> None:
             console.print(f"[bold]{key}[/bold]: {escape(_brief(value))}")
 
 
-def _brief(value: Any) -> str:
+def _brief(value: Any, levels: int = 10) -> str:
+    """A value in words; what is nested deeper than that many levels is left out."""
     if isinstance(value, float):
         return f"{value:.4g}"
+    if isinstance(value, dict | list) and not levels:
+        return "..."
     if isinstance(value, dict):
-        return ", ".join(f"{key} {_brief(item)}" for key, item in value.items())
+        return ", ".join(f"{key} {_brief(item, levels - 1)}" for key, item in value.items())
     if isinstance(value, list):
-        return "[" + ", ".join(map(_brief, value)) + "]"
+        return "[" + ", ".join(_brief(item, levels - 1) for item in value) + "]"
     return str(value)
 
 
