@@ -118,9 +118,13 @@ def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[s
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, target)
     try:
-        return checked_files(into)
+        files = checked_files(into)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
+    listed = {into / file for file in files}
+    for path in [path for path in into.rglob("*") if path.is_file() and path not in listed]:
+        path.unlink()  # no checksum covers it
+    return files
 
 
 def _check(model: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import cast
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json
@@ -12,6 +13,7 @@ from tailor.schemas.services import ROLES, Role
 
 ROUTER = "router"  # the key of the gateway itself
 FILE = "roles.json"
+REVOKED = "revoked"  # in the place of a role: rights go by the name, so a name never serves a second key
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 
 
@@ -32,18 +34,33 @@ def registered_roles(keys: str) -> dict[str, Role]:
     Raises:
       UsageError: The file cannot be read, or contains an unknown role.
     """
+    return {name: cast("Role", role) for name, role in _table(keys).items() if role != REVOKED}
+
+
+def check_unused(keys: str, name: str) -> None:
+    """Refuse a name for which a key was made before, wherever the key is now, and revoked or not.
+
+    Raises:
+      UsageError: There was one.
+    """
+    if name in _table(keys):
+        raise UsageError(f"name {name!r}: a key of it was made before, expected a new name")
+
+
+def _table(keys: str) -> dict[str, str]:
+    """All names ever registered, with their roles or REVOKED."""
     path = Path(keys) / FILE
     if not path.exists():
         return {}
     table = read_json(path, "the file that `tailor keys new` writes")
-    if not isinstance(table, dict) or not all(role in ROLES for role in table.values()):
+    if not isinstance(table, dict) or not all(role in (*ROLES, REVOKED) for role in table.values()):
         raise UsageError(f"{path}: expected names with one of the roles {', '.join(ROLES)}")
     return table
 
 
-def write_roles(keys: str, roles: dict[str, Role]) -> None:
-    """Replace the table."""
+def write_role(keys: str, name: str, role: str) -> None:
+    """Register a role, or REVOKED, for a name."""
     path = Path(keys) / FILE
     fresh = path.with_suffix(".new")
-    fresh.write_text(json.dumps(roles, indent=2, sort_keys=True) + "\n")
+    fresh.write_text(json.dumps({**_table(keys), name: role}, indent=2, sort_keys=True) + "\n")
     fresh.replace(path)

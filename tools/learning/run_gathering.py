@@ -52,9 +52,10 @@ class Policy:
 
     @property
     def jobs(self) -> list[tuple[str, int]]:
-        """Every run: scenario and seed."""
+        """Every run: scenario and a seed of its own, since scenarios of one seed share noise and the body's draws."""
         first = FIRST_SEED + 100_000 * self.seed
-        return [(scenario, first + k) for k in range(self.runs) for scenario in self.scenarios]
+        count = self.runs * len(self.scenarios)
+        return [(self.scenarios[k % len(self.scenarios)], first + k) for k in range(count)]
 
 
 def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:

@@ -63,9 +63,9 @@ class Explainer:
         self._objects = objects
 
     def explanation(self, message: Subgoals) -> Explanation | None:
-        """Explanation of subgoals; None without models, or if no parameter was free."""
+        """Explanation of subgoals; None without models, if no parameter was free, or if the message is damaged."""
         context = self._context
-        if context is None:
+        if context is None or message.tick < 0:
             return None
         rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
         objects = self._objects

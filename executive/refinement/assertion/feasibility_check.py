@@ -41,10 +41,15 @@ class FeasibilityCheck:
         arrival_ids = frozenset(sequence.actions[position - 1].variables) if position else frozenset()
         actions = sequence.actions[position : position + 1]
         self.best_failure = 1.0
-        self.starts: list[dict[int, float]] = []  # values by variable id within START_MARGIN, least failure first
+        self._best: list[tuple[float, dict[int, float]]] = []  # failure and values by variable id, least failure first
         self._objective = SequenceObjective(actions, sequence.variables, models, settings, arrival_ids)
         self._rng = rng
         self._remaining = settings.assertion_samples if self._objective.ids else 1
+
+    @property
+    def starts(self) -> list[dict[int, float]]:
+        """Values by variable id of the best samples so far, within START_MARGIN of the best; least failure first."""
+        return [values for failure, values in self._best if failure <= self.best_failure + START_MARGIN]
 
     def advance(self, budget: Budget) -> bool | None:
         """True: some sample keeps the failure within the limit. False: none does. None: the budget is spent."""
@@ -59,8 +64,8 @@ class FeasibilityCheck:
             finite = np.isfinite(prediction.worst_failure + prediction.duration_s)
             failure = np.where(finite, prediction.worst_failure, 1.0)
             order = np.argsort(failure, kind="stable")[:N_STARTS]
+            drawn = [(float(failure[i]), self._objective.values(samples[i])) for i in order]
+            self._best = sorted((*self._best, *drawn), key=lambda each: each[0])[:N_STARTS]
             self.best_failure = min(self.best_failure, float(failure.min()))
-            limit = self.best_failure + START_MARGIN
-            self.starts = [self._objective.values(samples[i]) for i in order if failure[i] <= limit]
             self._remaining -= count
         return True

@@ -173,8 +173,11 @@ def _is_private(path: Path) -> bool:
 
 
 def _make_private(path: Path) -> None:
+    mode = 0o750 if VARIABLE in os.environ else 0o700
     try:
-        path.mkdir(mode=0o750 if VARIABLE in os.environ else 0o700, parents=True, exist_ok=True)
+        path.parent.parent.mkdir(parents=True, exist_ok=True)
+        for each in (path.parent, path):  # one by one: `parents` makes them as the umask says, perhaps for a group
+            each.mkdir(mode=mode, exist_ok=True)
         for each in (path.parent, path):
             if not _is_private(each):
                 raise UsageError(f"{each}: expected a folder that only this user may write, see {VARIABLE}")

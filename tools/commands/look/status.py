@@ -88,7 +88,7 @@ def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -
 
 def _watch(key: StopKey, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
     """The live view, until Ctrl-C or q."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     drawn_ns = 0
     with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
         while not stop.requested:

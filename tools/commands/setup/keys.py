@@ -16,7 +16,7 @@ from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
 from tailor.schemas.errors import UsageError
 from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import KEYS
-from tailor.tools.keys.registry import ROUTER, check_name, registered_roles, write_roles
+from tailor.tools.keys.registry import REVOKED, ROUTER, check_name, check_unused, registered_roles, write_role
 
 DAYS = 825  # two years and a quarter, as many clients accept at most
 SESSION = "session.json5"
@@ -52,11 +52,11 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.action == "revoke":
         _revoke(arguments, roles)
     else:
-        _new(arguments, roles)
+        _new(arguments)
     return 0
 
 
-def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
+def _new(arguments: argparse.Namespace) -> None:
     from tailor.tools.keys.authority import Authority, utc_now
 
     name, keys = check_name(arguments.name), Path(arguments.keys)
@@ -66,13 +66,14 @@ def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
         check_endpoint(arguments.endpoint)
     if not 0 < arguments.days < 10_000:
         raise UsageError(f"--days is {arguments.days}, expected 1 to 9999")
+    check_unused(arguments.keys, name)
     folder, now = keys / name, utc_now()
     if folder.exists():
         raise UsageError(f"{folder}: exists already, expected a new name")
     try:
         Authority.of(keys, now, arguments.days).issue(folder, name, arguments.host, now, arguments.days)
         if arguments.role:
-            write_roles(arguments.keys, {**roles, name: arguments.role})
+            write_role(arguments.keys, name, arguments.role)
         if arguments.endpoint:
             (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder), encoding="utf-8")
             (folder / SESSION).chmod(0o600)
@@ -84,7 +85,7 @@ def _new(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
 def _revoke(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
     if arguments.name not in roles:
         raise UsageError(f"name {arguments.name!r}: no such key, expected one of: {', '.join(sorted(roles)) or 'none'}")
-    write_roles(arguments.keys, {name: role for name, role in roles.items() if name != arguments.name})
+    write_role(arguments.keys, arguments.name, REVOKED)
     words = f"{arguments.name} may do nothing from the next start of the bus on"
     _report(arguments, words, {"revoked": arguments.name})
 

@@ -17,6 +17,9 @@ from tailor.tools.parallel.pool import completed, in_order
 
 Array = NDArray[Any]
 REPEATS = 8  # runs of the same task with other noise
+# Durations lie nearer to the median of their own eight runs than to the true one: by 1.100 if their errors are normal,
+# by 1.074 if Laplacian (200 000 draws of each).
+OF_OWN_MEDIAN = 1.087
 REPEATED_TASKS = 300
 RESAMPLES = 2000
 
@@ -62,7 +65,7 @@ def noise_floor(robot: str, action: str, tasks: Array, seed: int, jobs: int) -> 
     durations, successes = (np.array(column) for column in zip(*runs, strict=True))
     off = np.abs(durations - np.median(durations, axis=1, keepdims=True)).mean(axis=1)
     share = successes.mean(axis=1)
-    return off * REPEATS / (REPEATS - 1), np.maximum(share, 1 - share)
+    return off * OF_OWN_MEDIAN, np.maximum(share, 1 - share)
 
 
 def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -> tuple[Array, Array]:

@@ -61,7 +61,8 @@ class Point:
         rounds = (Round(source, (scenario,), half, POOL),) if half else ()
         beside = min(shipped.beside, BESIDE)
         count = self.episodes - half
-        return replace(shipped, episodes=count, random=(), beside=beside, seed=seed, rounds=rounds)
+        training = replace(shipped.training, seed=seed)
+        return replace(shipped, episodes=count, random=(), beside=beside, seed=seed, rounds=rounds, training=training)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

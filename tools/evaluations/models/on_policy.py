@@ -26,7 +26,6 @@ from tailor.tools.learning.run_gathering import modelled_actions
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]
-ROUND_SEED, FRESH_SEED = 1, 2  # of the runs to learn from, and of those to judge by
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     domain = gathering.domain_of(arguments.robot)
     runs = arguments.robot, arguments.scenarios, arguments.episodes
     where = arguments.zoo, arguments.jobs, arguments.store
-    folders = [fresh.chosen(*runs, seed, *where) for seed in (ROUND_SEED, FRESH_SEED)]
+    first = 1000 + arguments.seed % 1_000_000  # one round to learn from, and one to judge by
+    folders = [fresh.chosen(*runs, seed, *where) for seed in (first, first + 1)]
     rows = [
         row
         for action in tracked(list(modelled_actions(domain)), "actions")
@@ -55,7 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
     ]
-    publish_report(Report("on-policy", "One on-policy round", rows, remarks), arguments.json, arguments.report)
+    report = Report("on-policy", "One on-policy round", rows, remarks, provenance=arguments.provenance)
+    publish_report(report, arguments.json, arguments.report)
     return 0
 
 

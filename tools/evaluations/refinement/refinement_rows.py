@@ -25,7 +25,9 @@ def rows_of(
     domain: str, scenarios: Sequence[str], seeds: Seeds, arguments: argparse.Namespace
 ) -> tuple[list[dict[str, Any]], dict[Start, Pair]]:
     """Rows for each scenario and horizon, one over all scenarios; and the pairs of the shortest horizon."""
-    found = {scenario: _run(Task(domain, scenario, arguments.profile, arguments.zoo), seeds, arguments)
+    # Starts of its own for each scenario: those of one seed share noise, and temperatures or poses.
+    own = {scenario: replace(seeds, first=seeds.first + k * arguments.episodes) for k, scenario in enumerate(scenarios)}
+    found = {scenario: _run(Task(domain, scenario, arguments.profile, arguments.zoo), own[scenario], arguments)
              for scenario in scenarios}  # fmt: skip
     rows: list[dict[str, Any]] = []
     first: dict[Start, Pair] = {}
@@ -36,7 +38,7 @@ def rows_of(
             row = {"scenario": scenario, "horizon": horizon, **columns(pairs[scenario])}
             rows.append(row | _over_shorter(scenario, found[scenario], shorter, horizon))
             if arguments.oracle and horizon == arguments.horizon[0]:
-                rows[-1] |= _oracle(scenario, domain, seeds, found[scenario], arguments)
+                rows[-1] |= _oracle(scenario, domain, own[scenario], found[scenario], arguments)
         together = {start: pair for some in pairs.values() for start, pair in some.items()}
         if len(scenarios) > 1:
             rows.append({"scenario": "all", "horizon": horizon, **columns(together, "scenario")})

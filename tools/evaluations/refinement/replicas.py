@@ -70,7 +70,8 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     """
     rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
     shipped = read_recipe(recipe_path(recipe.robot))
-    own = replace(shipped, episodes=recipe.episodes, random=(), seed=FIRST_SEED + number, rounds=rounds)
+    training = replace(shipped.training, seed=FIRST_SEED + number)  # a set differs in all that is drawn
+    own = replace(shipped, episodes=recipe.episodes, random=(), seed=training.seed, rounds=rounds, training=training)
     making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
     show(make(making), False, {}, f"model {number}: ")
     return making

@@ -22,6 +22,8 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas import messages as m
 from tailor.tools.viewer.explanations.situation import Situation, situations_of
 
+MAX_ID = 4096  # of a variable; a message has no room for as many
+
 
 @dataclass(frozen=True, slots=True)
 class FreeParameter:
@@ -96,8 +98,8 @@ def explain(
 def sequence_of(
     message: m.Subgoals, library: Mapping[str, Action], objects: m.Contexts | None = None
 ) -> ActionSequence | None:
-    """The instantiated sequence that the message reports; None if it names an action that the library lacks."""
-    if not message.actions or any(a.action not in library for a in message.actions):
+    """The instantiated sequence that the message reports; None if it does not fit the actions of the library."""
+    if not message.actions or not all(_fits(a, library) for a in message.actions):
         return None
     table: dict[int, Variable] = {}
     for instance in message.actions:
@@ -129,6 +131,13 @@ def sequence_of(
         for a in message.actions
     )
     return ActionSequence(actions, variables, library, contexts=contexts)
+
+
+def _fits(instance: m.InstantiatedAction, library: Mapping[str, Action]) -> bool:
+    """Whether an action is known and has its parameters; a damaged message has anything."""
+    ids = [parameter.id for parameter in instance.parameters]
+    known = instance.action in library and len(ids) == len(library[instance.action].parameters)
+    return known and all(0 <= each <= MAX_ID for each in ids)
 
 
 def _rows_by_action(objects: m.Contexts) -> dict[str, ContextRows]:

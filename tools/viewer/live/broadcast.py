@@ -50,7 +50,7 @@ class EventBroadcast:
     """Keeps the events of a run and passes new ones to all pages. Thread-safe."""
 
     def __init__(self, keep_s: float = KEEP_S) -> None:
-        self._keep_s = keep_s
+        self._keep_s, self._forgot_s = keep_s, 0.0
         self._events: list[Event] = []
         self._pages: set[Subscription] = set()
         self._lock = Lock()
@@ -93,9 +93,9 @@ class EventBroadcast:
 
     def _forget(self, now_s: float) -> None:
         """Drop old samples, a minute at a time."""
-        if self._events[0].at_s >= now_s - self._keep_s - 60:
+        if now_s < self._forgot_s + 60:
             return
-        oldest = now_s - self._keep_s
+        self._forgot_s, oldest = now_s, now_s - self._keep_s
         newest = {e.kind: e for e in self._events if e.kind.startswith(OUTLINE)}
         self._events = [e for e in self._events if e.at_s >= oldest or not _passes(e) or e is newest.get(e.kind)]
 

@@ -5,8 +5,10 @@ The listener is a plain subscriber with its own queue. It publishes nothing and 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
+from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
@@ -34,20 +36,30 @@ class BusListener:
       sender: Leave out executives whose id does not begin with this.
     """
 
-    def __init__(self, intake: IngestQueue, timeline: RunTimeline, broadcast: EventBroadcast, sender: str = "") -> None:
+    def __init__(
+        self,
+        intake: IngestQueue,
+        timeline: RunTimeline,
+        broadcast: EventBroadcast,
+        sender: str = "",
+        now: Instant | None = None,
+    ) -> None:
         self._intake = intake
         self._timeline = timeline
         self._broadcast = broadcast
         self._sender = sender
         self._began_ns: int | None = None
+        self._previous = now or Instant(time.monotonic_ns(), wall_ns())
 
-    def poll(self) -> None:
-        """Convert and broadcast the messages received since the last call."""
+    def poll(self, now: Instant | None = None) -> None:
+        """Convert and broadcast the messages received since the last call; `now` for tests."""
         events: list[Event] = []
+        now = now or Instant(time.monotonic_ns(), wall_ns())
         for raw in self._intake.drain():
             message = _read(raw)
             if message is not None and self._wanted(raw):
-                events += self._timeline.events_of(self._at_s(raw), raw.key, message)
+                events += self._timeline.events_of(self._at_s(raw, now), raw.key, message)
+        self._previous = now
         self._broadcast.publish(events)
 
     def run(self, clock: Clock, stopped: Callable[[], bool]) -> None:
@@ -57,11 +69,11 @@ class BusListener:
             loop.wait_for_next_period()
             self.poll()
 
-    def _at_s(self, raw: Raw) -> float:
-        """Seconds since the reception of the first message, by the wall clock as in recordings."""
-        received_ns = raw.received_wall_ns or wall_ns()
-        self._began_ns = received_ns if self._began_ns is None else self._began_ns
-        return max(0.0, (received_ns - self._began_ns) / 1e9)
+    def _at_s(self, raw: Raw, now: Instant) -> float:
+        """Seconds since the arrival of the first message, by the clock that never goes back."""
+        arrived_ns = arrival_ns(raw.received_wall_ns, self._previous, now)
+        self._began_ns = arrived_ns if self._began_ns is None else self._began_ns
+        return max(0.0, (arrived_ns - self._began_ns) / 1e9)
 
     def _wanted(self, raw: Raw) -> bool:
         if not self._sender or not raw.key.startswith(EXECUTIVE):

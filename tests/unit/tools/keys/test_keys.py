@@ -11,7 +11,7 @@ from cryptography.x509.oid import NameOID
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.keys.authority import AUTHORITY_KEY, Authority
-from tailor.tools.keys.registry import check_name, registered_roles, write_roles
+from tailor.tools.keys.registry import check_name, registered_roles, write_role
 from tailor.tools.main import main
 
 NOW = datetime(2026, 11, 22, tzinfo=UTC)
@@ -69,9 +69,21 @@ def test_the_authority_is_made_once(keys):
 
 
 def test_a_revoked_name_has_no_role(tmp_path, capsys):
-    write_roles(str(tmp_path), {"driving": "executive", "viewing": "observer"})
+    write_role(str(tmp_path), "driving", "executive")
+    write_role(str(tmp_path), "viewing", "observer")
     assert main(["keys", "revoke", "driving", "--keys", str(tmp_path)]) == 0
     assert registered_roles(str(tmp_path)) == {"viewing": "observer"}
+
+
+@pytest.mark.parametrize("is_revoked", [True, False])
+def test_a_name_never_serves_a_second_key(tmp_path, capsys, is_revoked):
+    """Rights go by the name: the first key, moved to its machine or stolen, would have those of the second."""
+    write_role(str(tmp_path), "driving", "executive")
+    if is_revoked:
+        assert main(["keys", "revoke", "driving", "--keys", str(tmp_path)]) == 0
+    assert main(["keys", "new", "driving", "--role", "people", "--keys", str(tmp_path)]) == 2
+    assert "name 'driving': a key of it was made before, expected a new name" in capsys.readouterr().err
+    assert not (tmp_path / "driving").exists()
 
 
 @pytest.mark.parametrize("table", [{"x": "root"}, {"x": ""}, {"x": []}, ["people"], "people"])
