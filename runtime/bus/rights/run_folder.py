@@ -178,7 +178,6 @@ def _make_private(path: Path) -> None:
         path.parent.parent.mkdir(parents=True, exist_ok=True)
         for each in (path.parent, path):  # one by one: `parents` makes them as the umask says, perhaps for a group
             each.mkdir(mode=mode, exist_ok=True)
-        for each in (path.parent, path):
             if not _is_private(each):
                 raise UsageError(f"{each}: expected a folder that only this user may write, see {VARIABLE}")
     except OSError as error:

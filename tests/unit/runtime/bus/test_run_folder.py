@@ -31,6 +31,16 @@ def test_folder_and_passwords_are_private():
         assert (mode(folder.path), mode(folder.path.parent) & 0o022, mode(folder.users_file)) == (0o700, 0, 0o600)
 
 
+def test_a_user_with_a_group_of_its_own_gets_private_folders_too():
+    """The umask of many systems is 002."""
+    before = os.umask(0o002)
+    try:
+        with hosted(ENDPOINT, ["people"]) as folder:
+            assert (mode(folder.path), mode(folder.path.parent)) == (0o700, 0o700)
+    finally:
+        os.umask(before)
+
+
 def test_the_group_of_a_service_may_read_them(tmp_path, monkeypatch):
     (tmp_path / "s").mkdir(mode=0o750)
     monkeypatch.setenv("TAILOR_RUN_DIR", str(tmp_path / "s"))

@@ -22,8 +22,9 @@ from tailor.tools.evaluations.oracles.grid import _judged, _values, subgoal_para
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.evaluations.refinement import ablations, figure1, figure11, replicas, table3, table4
+from tailor.tools.evaluations.refinement import ablations, figure1, figure11, refinement_rows, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
+from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired
 
 DONE = Outcome(
@@ -249,3 +250,24 @@ def test_an_ablation_is_compared_with_the_default_pair_by_pair():
     assert (row["slower_pct"], row["lost_s"]) == (pytest.approx(100 / 3), pytest.approx(1 / 3))
     same = ablations.row("default", ablations.Judged(greedy, default, default))
     assert (same["improvement_more_points"], same["improvement_more_p"]) == (0.0, 1.0)
+
+
+def test_scenarios_have_starts_of_their_own(monkeypatch):
+    """Those of one seed share noise and what the body draws; the row over all scenarios takes them for independent."""
+    ran: dict[str, range] = {}
+
+    def run_all(task, variants, seeds, *_):
+        ran[task.scenario] = seeds
+        return {variant.name: {seed: replace(DONE, seed=seed) for seed in seeds} for variant in variants}
+
+    monkeypatch.setattr(refinement_rows, "run_all", run_all)
+    given = argparse.Namespace(profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0)
+    rows, _ = refinement_rows.rows_of("arm", ["letter-A", "letter-B"], Seeds(100, {}), given)
+    assert ran == {"letter-A": range(100, 104), "letter-B": range(104, 108)}
+    assert [row["n"] for row in rows] == [4, 4, 8]
+
+
+def test_a_set_of_models_has_a_seed_of_training_of_its_own(monkeypatch, tmp_path):
+    monkeypatch.setattr(replicas, "show", lambda *_: None)
+    recipes = [replicas.replica(replicas.Recipe("soccer", (), 60, 0), k, tmp_path, 1).recipe for k in (1, 2)]
+    assert len({recipe.seed for recipe in recipes}) == len({recipe.training.seed for recipe in recipes}) == 2

@@ -218,3 +218,13 @@ def test_what_the_hub_refuses_is_reported_in_one_line(hub, capsys, monkeypatch):
     monkeypatch.setenv("HF_ENDPOINT", "http://127.0.0.1:9")
     assert "user/mine: the hub cannot be reached" in refused(capsys, "pull", "--from", "user/mine", "--zoo", "zoo")
     assert "user/mine: the hub cannot be reached" in refused(capsys, "push", ROBOT, "--to", "user/mine")
+
+
+def test_a_part_that_no_checksum_covers_is_left_out(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "mine")
+    assert main(["models", "push", "--data", "mine", "--to", "./pushed"]) == 0
+    stray = tmp_path / "pushed" / "go" / "part-00020.parquet"
+    shutil.copyfile(tmp_path / "pushed" / "go" / "part-00000.parquet", stray)
+    assert main(["models", "pull", "--data", "theirs", "--from", "./pushed"]) == 0
+    assert [path.name for path in (tmp_path / "theirs" / "go").glob("*.parquet")] == ["part-00000.parquet"]

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from tailor.runtime.bus.arrival import Instant
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
@@ -137,15 +138,48 @@ def test_a_port_in_use_is_an_error_of_one_line() -> None:
 
 def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
     intake, broadcast = IngestQueue(), EventBroadcast()
-    listener = BusListener(intake, RunTimeline(), broadcast)
+    listener = BusListener(intake, RunTimeline(), broadcast, now=Instant(0, 10**18))
     intake.put(raw(status()))
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
-    listener.poll()
+    listener.poll(Instant(10**9, 10**18 + 10**9))
     with broadcast.subscribe() as page:
         events = json.loads(page.next(0))
     assert [kind for _, kind, _ in events] == ["state", "action", "belief", "odom"]
     assert events[-1][0] == 0.25
     assert events[-1][2]["x"] == 1.5
+
+
+def test_a_wall_clock_that_is_set_back_stops_no_page() -> None:
+    intake, broadcast, hour_ns = IngestQueue(), EventBroadcast(), 3600 * 10**9
+    listener = BusListener(intake, RunTimeline(), broadcast, now=Instant(0, 10**18))
+    for k in range(1, 11):
+        wall_ns = 10**18 + k * 10**9 - hour_ns * (k > 5)
+        intake.put(raw(m.Odometry(0, float(k), 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=wall_ns - 1000))
+        listener.poll(Instant(k * 10**9, wall_ns))
+    with broadcast.subscribe() as page:
+        events = json.loads(page.next(0))
+    assert [fields["x"] for _, kind, fields in events if kind == "odom"] == [float(k) for k in range(1, 11)]
+    assert [at_s for at_s, kind, _ in events if kind == "odom"] == pytest.approx(
+        [float(k) for k in range(10)], abs=0.01
+    )
+
+
+def test_a_held_switch_is_one_event_and_every_stop_is_one() -> None:
+    timeline = RunTimeline()
+    messages = [False] * 50 + [True, True] + [False] * 50
+    found = [event for k, stop in enumerate(messages) for event in timeline.events_of(0.1 * k, "estop", m.EStop(stop))]
+    assert [event.fields["stop"] for event in found] == [False, True, True, False]
+
+
+def test_old_samples_are_forgotten_once_a_minute_only() -> None:
+    broadcast = EventBroadcast(keep_s=60.0)
+    broadcast.publish([Event(0.0, "state", {})])
+    kept = []
+    for k in range(3000):
+        broadcast.publish([Event(0.1 * k, "odom", {"x": float(k)})])
+        kept.append(broadcast._events)
+    assert len({id(events) for events in kept}) <= 6
+    assert len(kept[-1]) <= 1202
 
 
 def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
