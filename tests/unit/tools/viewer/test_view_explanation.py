@@ -152,3 +152,16 @@ def test_what_rounds_to_zero_has_no_sign():
     quantities = (Quantity("angle_to", "rad"), Quantity("v", "m/s"))
     text = features_text(Situation("goToPose", quantities, (-0.001, -0.001), (0.0, -0.5)))
     assert text == "goToPose features (greedy): angle_to 0° (0°), v 0.00 m/s (-0.50 m/s)"
+
+
+@pytest.mark.parametrize("damage", ["a parameter too few", "an id that no message holds", "a negative id"])
+def test_a_damaged_message_has_no_explanation(refined, damage) -> None:
+    message = message_of(*refined)
+    first, *others = message.actions
+    parameters = first.parameters[:-1]
+    if damage != "a parameter too few":
+        wrong = 2**31 - 2 if damage == "an id that no message holds" else -5
+        parameters = (*parameters, replace(first.parameters[-1], id=wrong))
+    damaged = replace(message, actions=(replace(first, parameters=parameters), *others))
+    assert sequence_of(damaged, LIBRARY) is None
+    assert explained(damaged) is None
