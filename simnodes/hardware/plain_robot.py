@@ -40,7 +40,9 @@ class PlainRobot(Hardware):
         self.write_hz = settings.rate_hz
         self._settings, self._endpoint = settings, settings.bus.connect or endpoint
         self._stack = ExitStack()
-        self._tracker = PoseTracker(None, Drift())
+        start, drift = settings.pose.start, Drift(settings.pose.drift_per_m, settings.pose.drift_per_rad)
+        # One for all openings: after a fault the robot stands where odometry has carried it, not at its start.
+        self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift)
         self._stamps: dict[str, int] = {}
         self._pose_due_ns = 0
 
@@ -52,9 +54,6 @@ class PlainRobot(Hardware):
         session = self._stack.enter_context(
             open_client(self._endpoint, role="driver", identity=identity_in(key) if key else None)
         )
-        drift = Drift(settings.pose.drift_per_m, settings.pose.drift_per_rad)
-        start = settings.pose.start
-        self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift)
         self._stamps, self._pose_due_ns = {}, 0
         command = named(names.cmd_vel, TYPES[settings.command])
         self._command = session.plain_publisher(*address(settings.bus, command))
@@ -120,7 +119,8 @@ class PlainRobot(Hardware):
             return False
         self._stamps[key] = stamp_ns
         if isinstance(message, Odometry):
-            self._tracker.move(message)
+            if jump := self._tracker.move(message):
+                raise ValueError(f"{key}: {jump}; the pose is unknown until the localiser speaks")
         elif isinstance(message, PoseEstimate):
             self._tracker.correct(message)
         return True

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from tailor.schemas.messages import Odometry, PoseEstimate
 
+JUMP_M, JUMP_MPS = 0.5, 10.0  # a longer step of the odometry than both together is none that a robot has made
 HISTORY = 256  # odometry that is kept for a late localiser: 5 s at 50 Hz
 Planar = tuple[float, float, float]
 
@@ -55,16 +56,32 @@ class PoseTracker:
         self._variances = (0.0, 0.0, 0.0)  # at the localiser's newest pose
         self._since = (0.0, 0.0)  # distance and turn at that pose
 
-    def move(self, odometry: Odometry) -> None:
-        """Take odometry into account."""
+    def move(self, odometry: Odometry) -> str:
+        """Take odometry into account.
+
+        Returns:
+          Text if it jumped, e.g. since the base has restarted: the pose is then unknown until the localiser speaks.
+        """
         pose = (odometry.x, odometry.y, odometry.phi)
-        if self._history:
+        jump = self._jump(odometry)
+        if jump:
+            self._history.clear()
+            self._start, self.known = None, False
+        elif self._history:
             last = self._history[-1][1]
             self._distance_m += math.dist(last[:2], pose[:2])
             self._turned_rad += abs(math.remainder(pose[2] - last[2], math.tau))
         elif self._start is not None and not self.known:
             self._to_map, self.known = composed(self._start, inverse(pose)), True
         self._history.append((odometry.stamp_ns, pose, self._distance_m, self._turned_rad))
+        return jump
+
+    def _jump(self, odometry: Odometry) -> str:
+        if not self._history:
+            return ""
+        stamp_ns, last, *_ = self._history[-1]
+        step_m, passed_s = math.dist(last[:2], (odometry.x, odometry.y)), 1e-9 * max(0, odometry.stamp_ns - stamp_ns)
+        return f"jumped by {step_m:.1f} m" if step_m > JUMP_M + JUMP_MPS * passed_s else ""
 
     def correct(self, seen: PoseEstimate) -> None:
         """Take a pose of the localiser, valid at its stamp; without odometry it is ignored."""

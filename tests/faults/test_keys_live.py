@@ -128,7 +128,7 @@ WRONG = {
     "no role": (("new", "x"), "--role"),
     "a role for the router": (("new", "router", "--role", "people"), "--role"),
     "a name that is a path": (("new", "../x", "--role", "people"), "name '../x'"),
-    "a name twice": (("new", "x", "--role", "people"), "exists already"),
+    "a name twice": (("new", "x", "--role", "people"), "a key of it was made before"),
     "an unknown name": (("revoke", "y"), "no such key, expected one of: x"),
     "a bad endpoint": (("new", "z", "--role", "people", "--for", "nowhere"), "bus endpoint 'nowhere'"),
 }

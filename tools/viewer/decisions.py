@@ -85,8 +85,10 @@ def decisions_of(messages: Iterable[Timed]) -> DecisionLog:
             if now != action and message.action and log.decisions:
                 log.decisions[-1] = replace(log.decisions[-1], at_s=t.at_s, started=True)
             action = now
-        elif isinstance(message, ActionFinished) and log.decisions:
-            log.decisions[-1] = replace(log.decisions[-1], finished=message)
+        elif isinstance(message, ActionFinished):
+            search = []  # the next report is of another decision, also if it counts more checks
+            if log.decisions:
+                log.decisions[-1] = replace(log.decisions[-1], finished=message)
     return log
 
 

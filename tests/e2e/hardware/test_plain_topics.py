@@ -51,6 +51,25 @@ def test_odometry_that_repeats_itself_is_no_measurement(profile):
         assert wait_until(robot.read)["odom"] == later
 
 
+def test_a_robot_opened_again_is_where_odometry_has_carried_it():
+    with opened("plain") as (odometry, robot):
+        for n in range(3):
+            odometry.publish_encoded(codec.encode(replace(ODOMETRY, stamp_ns=(n + 1) * 10**9, phi=0.0, x=1.0 + n)))
+            assert wait_until(robot.read)["odom"].x == 1.0 + n
+        robot.close()
+        robot.open()
+        later = replace(ODOMETRY, stamp_ns=4 * 10**9, phi=0.0, x=3.5)
+        wait_until(lambda: odometry.publish_encoded(codec.encode(later)) and robot.read())
+        pose = robot._tracker.pose()
+        assert (pose.x, pose.y) == (2.5, 0.0)
+        assert pose.var_x > 0.0
+        reset = replace(ODOMETRY, stamp_ns=4_020_000_000, x=0.0)
+        odometry.publish_encoded(codec.encode(reset))
+        with pytest.raises(ValueError, match="odom: jumped by"):
+            wait_until(robot.read)
+        assert robot._tracker.pose() is None
+
+
 def test_a_wrong_frame_is_a_fault():
     with opened("plain") as (odometry, robot):
         data = codec.encode(ODOMETRY)

@@ -16,6 +16,7 @@ from pathlib import Path
 from tailor.executive.composition import build_context
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of_robot
 from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
@@ -64,6 +65,8 @@ def _config(arguments: argparse.Namespace) -> UnitsConfig:
     domain = build_context(executive_config(arguments.domain, deployment), sender="").domain
     check_driver(domain, driver_of(domain.robot, arguments.driver))
     parts = _parts(arguments.parts, bool(arguments.record))
+    if "driver" in parts and not arguments.driver_command and not spec_of_robot(domain.robot).body:
+        raise UsageError(f"{domain.robot} has no simulated body, expected --driver-command with that of its hardware")
     return UnitsConfig(
         domain=arguments.domain,
         robot=domain.robot,

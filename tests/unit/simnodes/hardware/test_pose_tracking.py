@@ -10,6 +10,7 @@ from tailor.schemas.messages import Odometry, PoseEstimate
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker, composed, inverse
 
 POSES = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
+STEPS = st.tuples(st.floats(-5, 5), st.floats(-5, 5), st.floats(-3, 3))  # of a second
 
 
 def odometry(stamp_s, x, y, phi):
@@ -32,7 +33,7 @@ def test_inverse_undoes_a_pose(pose, other):
     assert (x, y, math.cos(phi)) == pytest.approx((*other[:2], math.cos(other[2])), abs=1e-6)
 
 
-@given(POSES, POSES, POSES)
+@given(POSES, POSES, STEPS)
 def test_a_start_is_carried_on_by_odometry(start, first, step):
     tracker = PoseTracker(start, Drift())
     tracker.move(odometry(1, *first))
@@ -41,7 +42,7 @@ def test_a_start_is_carried_on_by_odometry(start, first, step):
     near(tracker.pose(), composed(start, step))
 
 
-@given(POSES, POSES, POSES)
+@given(POSES, POSES, STEPS)
 def test_a_late_pose_of_the_localiser_holds_for_its_stamp(place, first, step):
     tracker = PoseTracker(None, Drift())
     tracker.move(odometry(1, *first))
@@ -66,3 +67,16 @@ def test_a_localiser_without_odometry_gives_no_pose():
     tracker = PoseTracker(None, Drift())
     tracker.correct(seen(1, 5.0, 5.0, 0.0))
     assert tracker.pose() is None
+
+
+@pytest.mark.parametrize(("step_m", "passed_s", "jumps"), [(5.0, 0.02, True), (0.6, 0.02, False), (5.0, 2.5, False)])
+def test_odometry_that_jumps_makes_the_pose_unknown_until_the_localiser_speaks(step_m, passed_s, jumps):
+    """A base that restarts counts from zero again: integrated as motion, the robot would be believed metres away."""
+    tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
+    assert tracker.move(odometry(1.0, 0.0, 0.0, 0.0)) == ""
+    assert tracker.move(odometry(1.0 + passed_s, step_m, 0.0, 0.0)) == (f"jumped by {step_m:.1f} m" if jumps else "")
+    assert (tracker.pose() is None) is jumps
+    tracker.move(odometry(1.1 + passed_s, step_m, 0.0, 0.0))
+    assert (tracker.pose() is None) is jumps, "nor is it at its start again"
+    tracker.correct(seen(1.1 + passed_s, 3.0, 3.0, 1.0))
+    near(tracker.pose(), (3.0, 3.0, 1.0))

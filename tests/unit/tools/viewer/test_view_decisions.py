@@ -67,6 +67,14 @@ def test_a_new_search_does_not_count_for_the_old_decision() -> None:
     assert log.decisions[0].report.checks == 40
 
 
+def test_the_search_of_the_next_decision_does_not_count_for_one_whose_action_has_ended() -> None:
+    """It may count more checks than the one before, as if it went on."""
+    ended = m.ActionFinished(0, 8, "approachBall", 0, "done", "", 3.0, 3.1)
+    log = log_of(report(5, 40), BEGIN, ended, tick(9, 60), report(9, 90, 5.0), m.Subgoals(0, 9, 2, ()))
+    first, second = log.decisions
+    assert (first.report.checks, second.report.checks) == (40, 90)
+
+
 def test_an_old_search_does_not_count_for_a_new_decision() -> None:
     log = log_of(report(5, 40), BEGIN, m.Subgoals(0, 30, 2, ()))
     assert log.decisions[1].report is None
