@@ -1,4 +1,4 @@
-"""Reads TOML and JSON of users, in UTF-8 whatever the locale; whatever is wrong with a file becomes one line."""
+"""Reads TOML and JSON from outside: files of users, in UTF-8 whatever the locale, and texts such as a provenance."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import Rejected, UsageError
 
 T = TypeVar("T")
 
@@ -47,6 +47,15 @@ def json_value(text: str) -> Any:
       ValueError: The text is no JSON, or nested too deeply to be read.
     """
     return _parsed(json.loads, text, "JSON")
+
+
+def table_of(text: str) -> dict[str, Any] | Rejected:
+    """The JSON object in a received text; a Rejected for any other text, including endless nesting."""
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        return Rejected(f"no JSON: {str(error)[:80]}")
+    return value if isinstance(value, dict) else Rejected("no JSON object")
 
 
 def shown(value: Any) -> str:

@@ -10,8 +10,8 @@ from typing import Any
 from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.json_text import table_of
 from tailor.schemas.messages import Message, Provenance, TickReport
+from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
 

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 from tailor.schemas import messages as m
 from tailor.schemas.errors import Rejected
-from tailor.schemas.json_text import table_of
 from tailor.schemas.packages.pose3 import Pose3, on_plane
 from tailor.schemas.packages.scene import (
     BASE,
@@ -26,6 +25,7 @@ from tailor.schemas.packages.scene import (
     sphere,
     text,
 )
+from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, Subgoal
 from tailor.tools.scenes.run_log import RunLog

@@ -11,8 +11,8 @@ import numpy as np
 from tailor.executive.composition import ModelLoader, load_models, rebuild_context
 from tailor.executive.deliberation.context import Context
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.json_text import table_of
 from tailor.schemas.messages import Contexts, Subgoals
+from tailor.schemas.parsed_files import table_of
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost

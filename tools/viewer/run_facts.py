@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.json_text import table_of
+from tailor.schemas.parsed_files import table_of
 from tailor.tools.viewer.event_fields import Fields
 
 # Limits that the page draws; the executive's shell keeps them (architecture.md, "One tick").

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from tailor.runtime.recordings.recording import Recording, open_recording
 from tailor.schemas.errors import Rejected
-from tailor.schemas.json_text import table_of
+from tailor.schemas.parsed_files import table_of
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.survey import Stream, Survey, percentiles, survey

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tailor.tools.cli.column_titles import column_title
+from tailor.tools.evaluations.pages.column_titles import column_title
 from tailor.tools.evaluations.pages.report import shown
 from tailor.tools.figures.report_page import page, table
 

@@ -15,8 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.column_titles import column_title
 from tailor.tools.cli.number_checks import processes
+from tailor.tools.evaluations.pages.column_titles import column_title
 from tailor.tools.figures.report_page import image, page, table
 from tailor.tools.parallel.cluster import configure_cluster
 

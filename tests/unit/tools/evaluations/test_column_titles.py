@@ -2,7 +2,7 @@
 
 import pytest
 
-from tailor.tools.cli.column_titles import column_title
+from tailor.tools.evaluations.pages.column_titles import column_title
 
 
 @pytest.mark.parametrize(
