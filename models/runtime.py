@@ -17,6 +17,7 @@ from tailor.models.cards.card import (
     KINDS,
     MAX_MODEL_BYTES,
     SUCCESS_KINDS,
+    UNITS,
     Card,
     card_path,
     read_bytes,
@@ -124,7 +125,7 @@ def _number_of_features(card: Card, path: Path) -> int:
 
 
 def _wrapped(session: Any, card: Card, path: Path, bounds: ModelBounds | None) -> OnnxModel:
-    if card["kind"] in ("duration", "energy"):
+    if card["kind"] in UNITS:
         output_min, output_max = card["output_range"]
         return OnnxDuration(session, card, float(output_min), float(output_max), bounds)
     if card["kind"] in SUCCESS_KINDS:

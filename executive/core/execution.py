@@ -9,7 +9,7 @@ import numpy as np
 
 from tailor.executive.deliberation.deliberation import Decision
 from tailor.executive.interfaces.action import Action, Control
-from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.models import DurationModel, Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Array, Belief
 
@@ -82,13 +82,15 @@ def first_action(decision: Decision, models: Models, now_ns: int) -> Running:
     variables = decision.sequence.variables
     parameters = tuple(_value(variables[i].value, values.get(i)) for i in first.variables)
     predicted_s = decision.choice.predicted_s[0]
-    interval_s = _interval_s(first.action, models, parameters)
+    path = models.duration_path(first.action.duration_model, bool(first.context))
+    interval_s = _interval_s(first.action, models.durations.get(path), parameters)
     return Running(first.action, first.step, first.asserted, parameters, predicted_s, now_ns, interval_s=interval_s)
 
 
-def _interval_s(action: Action, models: Models, parameters: tuple[float, ...]) -> tuple[float, float] | None:
+def _interval_s(
+    action: Action, model: DurationModel | None, parameters: tuple[float, ...]
+) -> tuple[float, float] | None:
     """Interval of the duration with these parameters; None if the model has none, or gives no valid one."""
-    model = models.durations.get(action.duration_model)
     if not getattr(model, "calibrated", False):
         return None
     _, (lower_s,), (upper_s,) = model.interval(action.arguments(np.asarray([parameters])))  # type: ignore[union-attr]

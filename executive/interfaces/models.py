@@ -104,3 +104,14 @@ class Models:
 
     durations: Mapping[str, DurationModel]
     successes: Mapping[str, SuccessModel]
+
+    def duration_path(self, path: str, in_context: bool) -> str:
+        """Path of the duration model for an action that names `path`.
+
+        Args:
+          path: `Action.duration_model`.
+          in_context: Whether the action has objects beside it now. Then it is the model that was calibrated beside
+            objects, if there is one: "goToPose/duration_beside" for "goToPose/duration".
+        """
+        beside = f"{path}_beside"
+        return beside if in_context and beside in self.durations else path

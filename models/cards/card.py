@@ -16,10 +16,10 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import json_value
 
 FORMAT = 1
-# "clearance" is success beside one object of the action's context
-KINDS = ("duration", "success", "clearance", "energy")
+# "clearance" is success beside one object of the action's context; "duration_beside" is durations beside any of them
+KINDS = ("duration", "success", "clearance", "energy", "duration_beside")
 SUCCESS_KINDS = ("success", "clearance")
-UNITS = {"duration": "s", "energy": "J"}  # of the predictions; a probability has none
+UNITS = {"duration": "s", "duration_beside": "s", "energy": "J"}  # of the predictions; a probability has none
 MAX_CARD_BYTES = 1 << 20  # ours are some 20 kB
 MAX_MODEL_BYTES = 64 << 20  # ours are well below 1 MB
 # required entries; docs/learning.md explains each

@@ -11,6 +11,7 @@ from tailor.schemas.parsed_files import shown
 
 OUTPUTS = {  # the second form is that of older models, without intervals
     "duration": (["mean_s", "lower_s", "upper_s"], ["mean_s", "std_s"]),
+    "duration_beside": (["mean_s", "lower_s", "upper_s"],),
     "energy": (["mean_j", "lower_j", "upper_j"], ["mean_j", "std_j"]),
     "success": (["success"],),
     "clearance": (["success"],),
@@ -18,6 +19,7 @@ OUTPUTS = {  # the second form is that of older models, without intervals
 KINDS_WITH_THRESHOLD = ("success", "clearance")
 TEST_FIGURES = {  # entries of the test that every list of models shows
     "duration": ("mae_s", "mean_duration_s"),
+    "duration_beside": ("mae_s", "mean_duration_s"),
     "energy": ("mae_j", "mean_energy_j"),
     "success": ("accuracy_pct", "missed_failures_pct"),
     "clearance": ("accuracy_pct", "missed_failures_pct"),

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
-from tailor.models.episodes.part_reader import WORK, read_part
+from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
 from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
 
@@ -47,6 +47,7 @@ class Episode:
       finished: Whether the controller finished; False if the time limit was exceeded.
       work_j: Work of the drives from each tick to the next in joules, shape (t,); None if not recorded.
       on_policy: Whether an optimiser chose the arguments.
+      in_context: Whether it was decided beside objects of its `ActionContext`, of which the arguments know nothing.
     """
 
     number: int
@@ -58,6 +59,7 @@ class Episode:
     finished: bool = True
     work_j: Array | None = None
     on_policy: bool = False
+    in_context: bool = False
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
@@ -118,6 +120,7 @@ def _table(episode: Episode, names: Sequence[str]) -> pa.Table:
         "success": np.full(count, episode.success),
         "finished": np.full(count, episode.finished),
         "failure": [episode.failure] * count,
+        IN_CONTEXT: np.full(count, episode.in_context),
     }
     return pa.table(columns)
 
@@ -199,7 +202,8 @@ def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Ep
     ticks = np.column_stack([column[name] for name in names])
     requested = np.column_stack([column[f"asked_{name}"] for name in names])
     numbers = column["episode"]
-    work = column.get(WORK, np.full(len(numbers), np.nan))  # older data sets lack the column
+    work = column.get(WORK, np.full(len(numbers), np.nan))  # older data sets lack the columns
+    in_context = column.get(IN_CONTEXT, np.zeros(len(numbers), bool))
     starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
     return [
         Episode(
@@ -212,6 +216,7 @@ def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Ep
             bool(column["finished"][a]),
             work[a:b] if np.isfinite(work[a:b]).all() else None,
             on_policy,
+            bool(in_context[a]),
         )
         for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
     ]

@@ -13,14 +13,16 @@ from tailor.schemas.errors import UsageError
 if TYPE_CHECKING:
     import pyarrow as pa
 
-WORK = "work_j"  # older data sets lack it
+WORK, IN_CONTEXT = "work_j", "in_context"
 # columns beside the numbers to learn from: check of the type in pyarrow.types, and the type in words
 PER_EPISODE = {
     "episode": ("is_integer", "integers"),
     "success": ("is_boolean", "true or false"),
     "finished": ("is_boolean", "true or false"),
     "failure": ("is_string", "text"),
+    IN_CONTEXT: ("is_boolean", "true or false"),
 }
+OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
 
 
 def read_part(path: Path, names: Sequence[str]) -> pa.Table:
@@ -42,10 +44,11 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
         first = str(error).partition("\n")[0]  # others list the columns
         raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
     numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
-    missing = [name for name in (*PER_EPISODE, *numbers) if name not in table.column_names]
+    absent = {name for name in OPTIONAL if name not in table.column_names}
+    missing = [name for name in (*PER_EPISODE, *numbers) if name not in {*table.column_names, *absent}]
     if missing or not table.num_rows:
         raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
-    wanted = [*PER_EPISODE, *numbers, *({WORK} & set(table.column_names))]
+    wanted = [name for name in (*PER_EPISODE, *numbers, WORK) if name not in absent]
     checked = table.select(list(dict.fromkeys(wanted)))
     _check_columns(checked, numbers, path)
     return checked
@@ -58,7 +61,8 @@ def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:
     for name in numbers:
         if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
             raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
-    for name, (check, expected) in PER_EPISODE.items():
+    for name in (name for name in PER_EPISODE if name in table.column_names):
+        check, expected = PER_EPISODE[name]
         if not getattr(pa.types, check)(table[name].type) or table[name].null_count:
             raise UsageError(f"{path}: column {name} holds {table[name].type}, expected {expected} in every row")
     if WORK in table.column_names and not pa.types.is_floating(table[WORK].type):

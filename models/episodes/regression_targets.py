@@ -26,4 +26,4 @@ def _energy_j(episode: Episode) -> float:
 
 DURATION = RegressionTarget("duration", "s", duration_examples, lambda _: True, lambda episode: episode.duration_s)
 ENERGY = RegressionTarget("energy", "j", energy_examples, lambda episode: episode.work_j is not None, _energy_j)
-REGRESSION_TARGETS = {target.kind: target for target in (DURATION, ENERGY)}
+REGRESSION_TARGETS = {"duration": DURATION, "duration_beside": DURATION, "energy": ENERGY}  # by kind of model

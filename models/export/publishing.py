@@ -33,7 +33,7 @@ LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 class Publication:
     """Card entries that data set and training do not hold."""
 
-    kind: str  # "duration", "energy", "success" or "clearance"
+    kind: str  # one of `card.KINDS`
     learner: str
     space: FeatureSpace
     seed: int

@@ -29,10 +29,11 @@ class CalibratedRegressor(RegressionModel):
         self.inner = inner
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, groups: Any = None) -> Self:
+    def fit(self, X: Any, y: Any, groups: Any = None, judged: Any = None) -> Self:
         """Fit to features (n, f) and seconds (n,); see `RegressionModel.fit`.
 
         The intervals are those of the first row of each episode: predictions are made before an action starts.
+        `judged`, shape (n,), marks the rows whose episodes the intervals are for; None: all.
 
         Raises:
           ValueError: The rows are not finite numbers.
@@ -43,6 +44,7 @@ class CalibratedRegressor(RegressionModel):
         unseen = getattr(self.inner_, "out_of_fold_", None)  # a learner that was chosen by its errors has them
         mean, std = unseen or out_of_fold(lambda: clone(self.inner), X, y, episodes, self.random_state)
         _, first = np.unique(episodes, return_index=True)
+        first = first if judged is None else first[np.asarray(judged)[first]]
         errors = (y - mean)[first]
         self.intervals_ = fit_intervals(X[first], std[first], errors, episodes[first], self.random_state)
         return self

@@ -6,7 +6,7 @@ cheap stand-in of the learner.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,8 +53,24 @@ def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: st
     return train_regression(DURATION, episodes, space, learner, seed)
 
 
+def train_duration_beside(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Train a model of durations beside objects: that of all episodes, with the intervals of those in a context.
+
+    Controllers may drive otherwise where they know of objects, and no argument says so.
+
+    Raises:
+      UsageError: See `train_regression`.
+    """
+    return train_regression(DURATION, episodes, space, learner, seed, judges=lambda episode: episode.in_context)
+
+
 def train_regression(
-    target: RegressionTarget, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
+    target: RegressionTarget,
+    episodes: Sequence[Episode],
+    space: FeatureSpace,
+    learner: str,
+    seed: int,
+    judges: Callable[[Episode], bool] = lambda _: True,
 ) -> Trained:
     """Train a model of durations or energies on the finished episodes.
 
@@ -64,6 +80,7 @@ def train_regression(
       space: Feature space of the action's arguments.
       learner: Key of `learners.DURATION_LEARNERS`.
       seed: Random seed of splits and learner.
+      judges: Whether the intervals and the test are for actions as this episode's; all are learned from.
 
     Raises:
       UsageError: Fewer than MIN_EPISODES finished episodes hold the target, or the learner is unknown.
@@ -71,32 +88,34 @@ def train_regression(
     finished = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
     check_count(finished, "finished")
     rng = np.random.default_rng(seed)
+    judging = [episode for episode in finished if judges(episode)]
+    judged_by = np.array([episode.number for episode in judging])
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
     singles = learners.single_learners(learners.learner_name(target.kind, learner), seed)
     n_i = _best_n_i(target, finished, kept, space, singles, rng)
     rows = target.examples(finished, n_i)
-    first = target.examples(finished, 1).of(apart)
-    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space)
+    first = target.examples(judging, 1).of(apart)
+    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, judged_by)
     mean, lower, upper = held_out.predict_interval(space(first.arguments))
     errors = first.targets - mean
     chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
     mae, ci = scores.mean_with_ci(np.abs(errors), rng)
-    on_policy = np.array([episode.on_policy for episode in finished])[np.isin(numbers, apart)]
+    on_policy = np.array([episode.on_policy for episode in judging])[np.isin(judged_by, apart)]
     unit = target.unit
     test = {
-        "n": len(apart),
+        "n": len(first.targets),
         "training_episodes": len(kept),
-        f"mean_{target.kind}_{unit}": float(np.mean([target.whole(episode) for episode in finished])),
+        f"mean_{target.kind}_{unit}": float(np.mean([target.whole(episode) for episode in judging])),
         f"mae_{unit}": mae,
         "mae_ci95": list(ci),
-        f"mae_first_ticks_{unit}": _mae(held_out, rows.of(apart), space),
+        f"mae_first_ticks_{unit}": _mae(held_out, rows.of(np.intersect1d(apart, judged_by)), space),
         f"bias_{unit}": float(-errors.mean()),
         **judged(first.targets, lower, upper, on_policy),
         "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
-    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space), n_i, test)
+    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space, judged_by), n_i, test)
 
 
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
@@ -117,8 +136,10 @@ def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) ->
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 
 
-def _fitted(learner: Any, rows: Examples, space: FeatureSpace) -> Any:
-    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups)
+def _fitted(learner: Any, rows: Examples, space: FeatureSpace, judged_by: NDArray[np.int64] | None = None) -> Any:
+    """The learner, fitted; intervals are those of the episodes with the numbers `judged_by`, if it has any."""
+    judged = {} if judged_by is None else {"judged": np.isin(rows.groups, judged_by)}
+    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **judged)
 
 
 def check_count(episodes: Sequence[Episode], what: str) -> None:

@@ -11,6 +11,7 @@ from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 TAGS = ["robotics", "onnx", "tailor", "action-models"]
 METRICS = {  # of the hub, by kind: name of the metric, entry of the card's test
     "duration": ("mae", "mae_s", "mean absolute error of the duration (s)"),
+    "duration_beside": ("mae", "mae_s", "mean absolute error of the duration beside objects (s)"),
     "energy": ("mae", "mae_j", "mean absolute error of the energy (J)"),
     "success": ("accuracy", "accuracy_pct", "share of correct predictions of success"),
     "clearance": ("accuracy", "accuracy_pct", "share of correct predictions of success beside an object"),

@@ -45,7 +45,7 @@ class RandomEpisodes:
 class Training:
     """Options of `tailor train`, and kinds of models; empty: its defaults, all kinds."""
 
-    kinds: tuple[Literal["duration", "success", "clearance", "energy"], ...] = ()
+    kinds: tuple[Literal["duration", "success", "clearance", "energy", "duration_beside"], ...] = ()
     features: str = ""
     energy_features: str = ""
     learner: str = ""

@@ -21,7 +21,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals
+from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.world import World
 from tailor.tools.learning import gathering
@@ -33,7 +33,7 @@ from tailor.tools.parallel.software import models_sha256
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; disjoint from the seeds of evaluations
 CHUNK = 10  # runs whose episodes are written together
-READ = (Subgoals, ExecStatus, ActionFinished)  # besides sensors and ground truth
+READ = (Subgoals, Contexts, ExecStatus, ActionFinished)  # besides sensors and ground truth
 MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
 UNPROVEN = RefinementSettings(certify_checks=0)  # certificates take time and do not change choices
 

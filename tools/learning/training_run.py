@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Train = Callable[[Sequence[Episode], FeatureSpace, str, int], Trained]
 
 MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
+MIN_IN_CONTEXT = 100  # finished ones: fewer do not determine intervals of their own
 NEVER_FAILED = "constant"  # the learner for an action that never failed, but names a model of success
 
 
@@ -93,7 +94,9 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     spaces = feature_spaces(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in _jobs(data, request)]
+    own = [
+        (data, kind, learner, train, spaces[kind.partition("_")[0]]) for kind, learner, train in _jobs(data, request)
+    ]
     every = (*own, *_context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:
@@ -135,6 +138,8 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
     if data.manifest.get("objects"):
         return
     yield "duration", request.learner, training.train_duration
+    if sum(episode.in_context and episode.finished for episode in data.episodes) >= MIN_IN_CONTEXT:
+        yield "duration_beside", request.learner, training.train_duration_beside
     with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
     if with_energy >= training.MIN_EPISODES:
         yield "energy", request.learner, partial(training.train_regression, ENERGY)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Message, Subgoals
+from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, InstantiatedAction, Message, Subgoals
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.lockstep.task_sampler import TaskSampler, sampler_of
 
@@ -31,6 +31,7 @@ class _Running:
     instance: InstantiatedAction
     action: Action
     goal: Array
+    in_context: bool  # whether it was decided beside objects of its context
     ticks: list[Array] = field(default_factory=list)
     motions: list[Message | None] = field(default_factory=list)  # at each tick; None: not recorded
     begun_s: float = 0.0  # after the action's start
@@ -53,6 +54,7 @@ class EpisodeExtractor:
         self._domain = domain
         self._sampler: TaskSampler = sampler_of(domain)
         self._subgoals: Subgoals | None = None  # the newest
+        self._contexts: Contexts | None = None  # the newest
         self._running: _Running | None = None
         self._motion: Message | None = None  # the newest
 
@@ -68,6 +70,8 @@ class EpisodeExtractor:
             match message:
                 case Subgoals():
                     self._subgoals = message
+                case Contexts():
+                    self._contexts = message
                 case ExecStatus() if message.action:
                     self._tick(message)
                 case ActionFinished():
@@ -93,13 +97,21 @@ class EpisodeExtractor:
             names = ", ".join(self._domain.actions)
             raise UsageError(f"recorded action '{status.action}', expected one of {self._domain.robot}: {names}")
         instance, action = self._subgoals.actions[0], self._domain.actions[status.action]
-        return _Running(status.action_index, instance, action, _goal(action, instance))
+        return _Running(status.action_index, instance, action, _goal(action, instance), self._is_in_context(action))
 
     def _adopt(self, run: _Running, new: InstantiatedAction) -> None:
         """Start the episode anew if the goal of the running action changed; its step may have another number now."""
         same = (new.action, new.asserted) == (run.instance.action, run.instance.asserted)
         if same and not np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
             run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
+            run.in_context = self._is_in_context(run.action)
+
+    def _is_in_context(self, action: Action) -> bool:
+        """Whether the newest decision knew objects near which the action may fail."""
+        decided, known = self._subgoals, self._contexts
+        if decided is None or known is None or known.tick != decided.tick:
+            return False
+        return any(each.action == action.name and each.values for each in known.contexts)
 
     def _arguments(self, run: _Running, status: ExecStatus) -> Array:
         """The controller's arguments with the believed state in place of the start, as instantiation computes it."""
@@ -135,6 +147,7 @@ class EpisodeExtractor:
         duration_s = finished.actual_s - run.begun_s
         work_j = self._work(run.motions)
         episode = Episode(len(self.episodes), ticks[0], ticks, duration_s, not failure, failure, done, work_j)
+        episode = replace(episode, in_context=run.in_context)
         self.episodes.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
 
     def _work(self, motions: list[Message | None]) -> Array | None:

@@ -40,4 +40,5 @@ def models_of(instance: InstantiatedAction, models: Models, settings: Refinement
         rows = np.array(instance.context)
         success = ContextSuccess(success, models.successes[beside_path], rows, context.may_meet)
     energy = models.durations[energy_path] if energy_path else None
-    return StageModels(models.durations[action.duration_model], success, energy)
+    duration_path = models.duration_path(action.duration_model, bool(instance.context))
+    return StageModels(models.durations[duration_path], success, energy)

@@ -152,7 +152,7 @@ def _all(zoo: Path) -> list[str]:
 def _quality(card: Card) -> str:
     test = card["test"]
     match card["kind"]:
-        case "duration":
+        case "duration" | "duration_beside":
             return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
         case "energy":
             return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"

@@ -116,7 +116,7 @@ def _results(row: dict[str, Any]) -> tuple[str, str, str, str]:
     """Mean, error, accuracy and missed failures; empty where the kind of model has none."""
     if row["kind"] in ("success", "clearance"):
         return "", "", f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
-    unit, mean = ("s", "mean_duration_s") if row["kind"] == "duration" else ("J", "mean_energy_j")
+    unit, mean = ("J", "mean_energy_j") if row["kind"] == "energy" else ("s", "mean_duration_s")
     low, high = row["mae_ci95"]
     error = f"{row[f'mae_{unit.lower()}']:.3f} {unit} ({low:.3f} .. {high:.3f})"
     return f"{row[mean]:.2f} {unit}", error, "", ""

@@ -18,7 +18,7 @@ from tailor.models.training import scores
 from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
-from tailor.tools.evaluations.models.coverage import coverage_columns
+from tailor.tools.evaluations.models.coverage import coverage_columns, predicted_by
 from tailor.tools.evaluations.models.floors import floor_columns
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
@@ -67,36 +67,40 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     made = []
     for name, action in tracked(sorted(declared.actions.items()), "actions"):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
-        row = {"domain": domain, "action": name, **duration_columns(durations[action.duration_model], data, seed)}
+        row = {"domain": domain, "action": name, **duration_columns(durations, action.duration_model, data, seed)}
         row |= _failures(successes[action.success_model], data) if action.success_model else {}
         row |= floor_columns(row, data, (declared.robot, name, seed, arguments.jobs)) if floors else {}
         made.append(row)
     return made
 
 
-def duration_columns(model: OnnxDuration, data: DataSet, seed: int) -> Row:
-    """Errors and coverage of a duration model, on the finished episodes of a data set.
+def duration_columns(durations: Mapping[str, OnnxDuration], path: str, data: DataSet, seed: int) -> Row:
+    """Errors and coverage of an action's duration model, on the finished episodes of a data set.
 
     Args:
-      model: Model of one action.
+      durations: The robot's models by path.
+      path: `Action.duration_model`; episodes in a context are predicted by the model beside objects, if there is one.
       data: Episodes of that action, at least one of them finished.
       seed: Random seed of the bootstrap of `mae_ci95`.
     """
-    examples = duration_examples([episode for episode in data.episodes if episode.finished], 1)
-    predicted, spread = model.predict(examples.arguments)
-    off = predicted - examples.targets
+    finished = [episode for episode in data.episodes if episode.finished]
+    examples = duration_examples(finished, 1)
+    in_context = np.array([episode.in_context for episode in finished])
+    beside = durations.get(f"{path}_beside", durations[path])
+    predicted = predicted_by(durations[path], beside, examples.arguments, in_context)
+    off = predicted.mean_s - examples.targets
     mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
     mean = float(examples.targets.mean())
     return {
-        "training_episodes": model.card["episodes"]["finished"],
+        "training_episodes": durations[path].card["episodes"]["finished"],
         "episodes": len(data.episodes),
         "mean_duration_s": mean,
         "mae_s": mae,
         "mae_ci95": ci,
         "bias_s": float(off.mean()),
         "relative_pct": 100 * mae / mean,
-        **coverage_columns(model, examples.arguments, examples.targets, spread),
-        "predicted_s": predicted,
+        **coverage_columns(predicted, examples.targets),
+        "predicted_s": predicted.mean_s,
         "observed_s": examples.targets,
     }
 

@@ -64,6 +64,6 @@ def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
         for action in modelled_actions(domain):
             data = read_data_set(folder / action)
             if any(episode.finished for episode in data.episodes):
-                columns = model_rows.duration_columns(durations[f"{action}/duration"], data, first)
+                columns = model_rows.duration_columns(durations, f"{action}/duration", data, first)
                 rows.append({"domain": domain, "action": action, "chosen_in": scenario, **columns})
     return rows

@@ -39,7 +39,7 @@ def situations_of(
     """
     found = []
     for action in actions:
-        model = models.durations[action.action.duration_model]
+        model = models.durations[models.duration_path(action.action.duration_model, bool(action.context))]
         card, bounds = getattr(model, "card", {}), getattr(model, "bounds", None)
         space = feature_spaces().get(card.get("features", ""))
         if space is not None:
