@@ -37,7 +37,12 @@ from tailor.tools.learning.training_run import checked, train_models
 from tailor.tools.parallel.pool import Processes
 
 WHOLE = "whole"  # marker of a folder of models, written last
-CHOOSING = ("duration", "duration_beside", "success", "clearance")  # kinds of models that choices depend on, while energies have no price
+CHOOSING = (
+    "duration",
+    "duration_beside",
+    "success",
+    "clearance",
+)  # kinds of models that choices depend on, while energies have no price
 
 
 @dataclass(frozen=True, slots=True)

@@ -96,6 +96,7 @@ def change_all(column: str, value: list[object]) -> Callable[[Path], None]:
         (change_all("failure", [1] * 6), "column failure holds int64, expected text in every row"),
         (twice, "cannot be read .Multiple matches for"),
         (change_all("work_j", ["x"] * 6), "column work_j holds string, expected numbers"),
+        (change_all("in_context", [1] * 6), "column in_context holds int64, expected true or false in every row"),
     ],
 )
 def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object], message: str) -> None:
@@ -104,6 +105,13 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         read_data_set(folder)
     assert str(folder / PART) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_one_does_not(folder: Path) -> None:
+    change_all("in_context", [True, False] * 3)(folder / PART)
+    assert [episode.in_context for episode in read_data_set(folder).episodes] == [True, False] * 3
+    change("in_context", None)(folder / PART)
+    assert not any(episode.in_context for episode in read_data_set(folder).episodes)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.planar import projective
 from tailor.models.training import learners, training
 from tailor.models.training.success_training import train_success
-from tailor.models.training.training import Trained, train_duration, train_regression
+from tailor.models.training.training import Trained, train_duration, train_duration_beside, train_regression
 from tailor.schemas.errors import UsageError
 from tests.support import standin
 
@@ -89,6 +89,23 @@ def test_training_twice_gives_the_same_bits(data, duration) -> None:
     assert again.test == duration.test
     rows = projective(data.episodes[0].ticks)
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
+
+
+def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_is_that_of_all(data, tmp_path) -> None:
+    late_s = {0: 1.5, 4: -1.5}  # of a quarter of the episodes, by their number
+    episodes = [
+        replace(e, in_context=e.number % 4 == 0, duration_s=e.duration_s + 5 + late_s.get(e.number % 8, 0.0))
+        for e in data.episodes
+    ]
+    alone, beside = (train(episodes, projective, "linear", 3) for train in (train_duration, train_duration_beside))
+    rows = projective(np.stack([e.ticks[0] for e in episodes]))
+    (mean, low, high), (same, lower, upper) = (each.learner.predict_interval(rows) for each in (alone, beside))
+    assert np.array_equal(mean, same)
+    assert (upper - lower).mean() > 1.2 * (high - low).mean()
+    assert beside.test["n"] < 0.5 * alone.test["n"]
+    about = Publication("duration_beside", "linear", projective, 3, "tailor train toy")
+    model = runtime.load_model(publish(tmp_path, replace(data, episodes=tuple(episodes)), beside, about))
+    assert np.allclose(model.interval(np.stack([e.ticks[0] for e in episodes]))[2], upper, atol=1e-4)
 
 
 def with_failures(data: DataSet, failing: int) -> list[Episode]:

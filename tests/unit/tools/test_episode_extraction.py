@@ -6,7 +6,15 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import UNOBSERVED
-from tailor.schemas.messages import ActionFinished, ExecStatus, InstantiatedAction, Parameter, Subgoals
+from tailor.schemas.messages import (
+    ActionFinished,
+    ActionObjects,
+    Contexts,
+    ExecStatus,
+    InstantiatedAction,
+    Parameter,
+    Subgoals,
+)
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 
@@ -52,6 +60,26 @@ def test_an_action_becomes_an_episode_with_the_believed_states() -> None:
     assert episode.failure == UNOBSERVED  # a move to a waypoint says nothing about balls
     assert np.allclose(episode.ticks[:, 0], 0.01 * np.arange(30))
     assert np.allclose(episode.ticks[:, [4, 7]], [2.0, 0.3])
+
+
+def test_an_episode_knows_whether_it_was_decided_beside_objects() -> None:
+    goal, ticks, end = subgoals("goToPose", {"xg": 2.0}), drive("goToPose", 0, 10), finished("goToPose", 0, 1.0)
+    there, gone = (ActionObjects("goToPose", ("x", "y", "r"), row) for row in ((1.0, 0.0, 0.2), ()))
+    other = replace(there, action="approachBall")
+    for objects, expected in (((there,), True), ((gone,), False), ((other,), False)):
+        [(_, episode)] = cut(Contexts(0, goal.tick, objects), goal, *ticks, end)
+        assert episode.in_context is expected
+    [(_, episode)] = cut(Contexts(0, goal.tick, (there,)), replace(goal, tick=7), *ticks, end)
+    assert not episode.in_context, "objects of an older decision"
+
+
+def test_a_decision_beside_objects_begins_an_episode_in_context() -> None:
+    first, late = drive("goToPose", 0, 10), drive("goToPose", 0, 10, first=10)
+    there = Contexts(0, 9, (ActionObjects("goToPose", ("x", "y", "r"), (1.0, 0.0, 0.2)),))
+    anew = replace(subgoals("goToPose", {"xg": 2.5}), tick=9)
+    messages = (subgoals("goToPose", {"xg": 2.0}), *first, there, anew, *late, finished("goToPose", 0, 2.0))
+    [(_, episode)] = cut(*messages)
+    assert episode.in_context
 
 
 def test_an_approach_s_goal_is_behind_the_ball() -> None:

@@ -16,18 +16,19 @@ START_NS = 5_000_000_000
 @dataclass
 class Calibrated:
     calibrated: bool = True
+    above_s: float = 2.0
 
     def interval(self, arguments):
         seconds = arguments[:, 4] - arguments[:, 0]
-        return seconds, seconds - 1.0, seconds + 2.0
+        return seconds, seconds - 1.0, seconds + self.above_s
 
 
-def started(model) -> Running:
-    first = SimpleNamespace(action=GO, step=1, asserted=False, variables=tuple(range(8)))
+def started(model, context=(), **others) -> Running:
+    first = SimpleNamespace(action=GO, step=1, asserted=False, variables=tuple(range(8)), context=context)
     variables = tuple(SimpleNamespace(value=value) for value in (0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0))
     sequence = SimpleNamespace(actions=(first,), variables=variables)
     decision = SimpleNamespace(sequence=sequence, choice=SimpleNamespace(values={}, predicted_s=(3.0,)))
-    return first_action(decision, Models({"goToPose/duration": model}, {}), START_NS)
+    return first_action(decision, Models({"goToPose/duration": model} | others, {}), START_NS)
 
 
 @pytest.mark.parametrize(("elapsed_s", "surprising"), [(1.9, True), (2.0, False), (5.0, False), (5.1, True)])
@@ -35,6 +36,13 @@ def test_an_action_beyond_its_interval_is_reported(elapsed_s, surprising) -> Non
     text = started(Calibrated()).surprise(START_NS + round(elapsed_s * 1e9))
     assert bool(text) is surprising
     assert not surprising or "2.0..5.0 s" in text
+
+
+def test_beside_objects_the_interval_is_that_of_the_model_calibrated_there() -> None:
+    others, object_row = {"goToPose/duration_beside": Calibrated(above_s=4.0)}, ((1.0, 0.5, 0.2),)
+    assert started(Calibrated(), object_row, **others).interval_s == (2.0, 7.0)
+    assert started(Calibrated(), (), **others).interval_s == (2.0, 5.0)
+    assert started(Calibrated(), object_row).interval_s == (2.0, 5.0)
 
 
 def test_a_model_without_intervals_reports_nothing() -> None:

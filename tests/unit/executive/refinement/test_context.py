@@ -55,6 +55,15 @@ def success_of(instance, arguments) -> np.ndarray:
 ARGUMENTS = np.array([[-2.0, 0, 0, 0, 2.0, 0, 0, 0], [-2.0, 1, 0, 0, 2.0, 1, 0, 0]])
 
 
+def test_beside_objects_durations_are_those_of_the_model_calibrated_there():
+    apart = object()
+    models = replace(BESIDE, durations={**BESIDE.durations, f"{GO_AROUND.duration_model}_beside": apart})
+    own = BESIDE.durations[GO_AROUND.duration_model]
+    for discs, loaded, expected in (([IN_THE_WAY], models, apart), ([], models, own), ([IN_THE_WAY], BESIDE, own)):
+        [instance] = beside(discs, [GO_AROUND], [START, GOAL]).actions
+        assert models_of(instance, loaded, EXACT).duration is expected
+
+
 def test_probabilities_of_several_objects_multiply_in_one_model_call():
     rows = ((0.0, 0.35, 0.2), (1.0, -0.4, 0.25))
     model = ClearanceSuccess()

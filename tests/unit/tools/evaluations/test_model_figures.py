@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.tools.evaluations.models import floors
+from tailor.tools.evaluations.models.model_rows import duration_columns
 from tailor.tools.figures import learned_reports
 from tailor.tools.main import main
 
@@ -34,6 +36,33 @@ def test_the_papers_tables_are_of_random_arguments_alone(name, capsys):
 def test_an_unknown_scenario_is_a_usage_error(capsys):
     assert main(["evaluate", "models", "--domain", "arm", "--on-policy", "chess"]) == 2
     assert "--on-policy chess: no such scenario of arm, expected some of letter-A" in capsys.readouterr().err
+
+
+class Wide:
+    """Predicts 3 s, and an interval of some width."""
+
+    card = {"episodes": {"finished": 9}}
+
+    def __init__(self, half_s):
+        self.half_s = half_s
+
+    def predict(self, arguments):
+        return np.full(len(arguments), 3.0), np.full(len(arguments), self.half_s)
+
+    def interval(self, arguments):
+        mean, std = self.predict(arguments)
+        return mean, mean - std, mean + std
+
+
+def test_each_episode_is_judged_by_the_interval_that_the_executive_had():
+    ticks = np.zeros((3, 8))
+    episodes = [Episode(k, ticks[0], ticks, 4.0, True, "", in_context=k < 2) for k in range(3)]
+    data = DataSet({"arguments": []}, tuple(episodes), "")
+    models = {"go/duration": Wide(0.5), "go/duration_beside": Wide(1.5)}
+    row = duration_columns(models, "go/duration", data, 1)
+    assert row["coverage_pct"] == pytest.approx(200 / 3)
+    assert row["interval_s"] == pytest.approx((3.0 + 3.0 + 1.0) / 3)
+    assert duration_columns({"go/duration": Wide(0.5)}, "go/duration", data, 1)["coverage_pct"] == 0
 
 
 def test_tasks_without_noise_leave_a_ratio_to_the_floor():
