@@ -27,7 +27,7 @@ WHOLE = (
     "tools/lockstep/*",
 )
 
-LEARNING = ("models/**/*.py", "tools/learning/*.py", "tools/lockstep/episode_extraction.py")
+LEARNING = ("models/**/*.py", "tools/learning/**/*.py", "tools/lockstep/episode_extraction.py")
 
 
 @lru_cache(maxsize=8)

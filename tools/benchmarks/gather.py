@@ -11,8 +11,8 @@ from rich.table import Table
 from tailor.executive import domains
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
-from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import modelled_actions
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.policy_runs import modelled_actions
 
 
 def run(console: Console, quick: bool) -> None:
@@ -26,9 +26,9 @@ def run(console: Console, quick: bool) -> None:
         robot = domains.load(name).robot
         for action in modelled_actions(name):
             with tempfile.TemporaryDirectory() as folder:
-                spec = gathering.DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
-                gathering.prepare(spec, resume=False)
-                parts = list(gathering.gather(spec, gathering.missing_parts(spec), jobs=1))
+                spec = random_episodes.DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
+                random_episodes.prepare(spec, resume=False)
+                parts = list(random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs=1))
             count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))
             if not count:
                 raise NoMeasurement(f"{robot}/{action} gathered no episode")

@@ -19,12 +19,11 @@ from tailor.models.cards.card import KINDS
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
-from tailor.tools.learning import gathering, run_gathering
-from tailor.tools.learning.active_gathering import Active, run_active
-from tailor.tools.learning.gathering import DataSetSpec
+from tailor.tools.learning.gathering import policy_runs, random_episodes
+from tailor.tools.learning.gathering.active_episodes import Active, run_active
+from tailor.tools.learning.gathering.random_episodes import DataSetSpec
 from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.recipe_checks import check_recipe
-from tailor.tools.learning.steps import Step, counted
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
     DEFAULT_FAILURE_LEARNER,
@@ -35,6 +34,7 @@ from tailor.tools.learning.training_request import (
 )
 from tailor.tools.learning.training_run import checked, train_models
 from tailor.tools.parallel.pool import Processes
+from tailor.tools.parallel.steps import Step, counted
 
 WHOLE = "whole"  # marker of a folder of models, written last
 CHOOSING = (
@@ -69,7 +69,7 @@ class Making:
     @property
     def domain(self) -> str:
         """Name of the robot's domain."""
-        return gathering.domain_of(self.robot)
+        return random_episodes.domain_of(self.robot)
 
     @property
     def random(self) -> Path:
@@ -112,8 +112,8 @@ def check(making: Making) -> None:
     """
     check_recipe(making.robot, making.recipe)
     request, domain = checked(_request(making, making.zoo, (), ())), domains.load(making.domain)
-    for action in run_gathering.modelled_actions(making.domain):
-        feature_spaces(request, tuple(gathering.argument_names(domain, action)), Path(action))
+    for action in policy_runs.modelled_actions(making.domain):
+        feature_spaces(request, tuple(random_episodes.argument_names(domain, action)), Path(action))
 
 
 def make(making: Making) -> Iterator[Step]:
@@ -157,7 +157,7 @@ def install(made: Path, zoo: Path, robot: str) -> None:
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
     """Data sets of random episodes: action, number, folder, and whether each is beside an object."""
     recipe, declared = making.recipe, domains.load(making.domain).actions
-    actions = run_gathering.modelled_actions(making.domain)
+    actions = policy_runs.modelled_actions(making.domain)
     wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
     if recipe.beside:
         contexts = {action: declared[action].context for action in actions}
@@ -174,10 +174,10 @@ def _random_episodes(making: Making) -> Iterator[Step]:
         objects = recipe.objects if beside else 0
         drawn = (making.domain, action, count, recipe.seed, folder / action)
         spec = DataSetSpec(*drawn, beside=beside, objects=objects, profile=recipe.profile)
-        gathering.prepare(spec, resume=True)
-        missing = gathering.missing_parts(spec)
-        left = sum(min(gathering.PART, count - first) for first in missing)
-        running = (done for done, *_ in gathering.gather(spec, missing, making.jobs))
+        random_episodes.prepare(spec, resume=True)
+        missing = random_episodes.missing_parts(spec)
+        left = sum(min(random_episodes.PART, count - first) for first in missing)
+        running = (done for done, *_ in random_episodes.gather(spec, missing, making.jobs))
         title = f"{action}: random episodes" + (" beside an object" if beside else "")
         yield from counted(title, running, count, count - left)
 
@@ -190,8 +190,8 @@ def _round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step
         for step in run_active(active, making.jobs):
             yield Step(f"{title}: {step.title}", step.done, step.total)
         return
-    policy = run_gathering.Policy(making.domain, each.scenarios, each.episodes, *where)
-    running = run_gathering.run_policy(policy, making.jobs)
+    policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where)
+    running = policy_runs.run_policy(policy, making.jobs)
     yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
 
 

@@ -62,7 +62,7 @@ class Recipe:
       episodes: Random episodes of each action,
       random: but for these.
       beside: Random runs beside objects, of each action that has a model of success beside an object.
-      objects: Objects noted after each of these runs, an episode each (see `object_gathering.py`); 0: one that is
+      objects: Objects noted after each of these runs, an episode each (see `beside_objects.py`); 0: one that is
         there while it runs.
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.

@@ -17,7 +17,7 @@ from tailor.models.cards.card import Card
 from tailor.models.episodes.sources import end_of
 from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
-from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.lockstep.bodies import body_of
 
 END_TOLERANCE = 1e-4  # seconds, metres, radians: other builds of the physics round otherwise
@@ -33,7 +33,7 @@ def staleness(card: Card) -> str:
     """What differs between a model's episodes and those of today's source; empty if nothing does, or if unknown."""
     if not is_stated(card):
         return "its card does not state the source of its episodes" if "source_sha256" in card["episodes"] else ""
-    changed = changed_files(card["episodes"], todays_files(gathering.domain_of(card["robot"])))
+    changed = changed_files(card["episodes"], todays_files(random_episodes.domain_of(card["robot"])))
     if not changed:
         return ""
     differing = differing_episodes(card)
@@ -45,15 +45,15 @@ def differing_episodes(card: Card) -> str:
     probe = card["episodes"].get("probe")
     if probe is None:
         return "it holds no random episodes to compare"
-    name, action = gathering.domain_of(card["robot"]), card["action"]
+    name, action = random_episodes.domain_of(card["robot"]), card["action"]
     domain = domains.load(name)
     if action not in domain.actions:
         return f"{name} has no action '{action}'"
     ends, objects = probe["ends"], probe.get("objects", 0)
     drawn = (len(ends), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")), objects)
-    spec = gathering.DataSetSpec(name, action, *drawn, probe.get("profile", ""))
+    spec = random_episodes.DataSetSpec(name, action, *drawn, probe.get("profile", ""))
     runs = range(ceil(len(ends) / max(1, objects)))
-    episodes, _ = gathering.run_episodes(spec, domain, body_of(name, spec.profile), runs)
+    episodes, _ = random_episodes.run_episodes(spec, domain, body_of(name, spec.profile), runs)
     for number, (episode, then) in enumerate(zip(episodes, ends, strict=False)):
         now = end_of(episode.duration_s, episode.ticks)
         if len(now) != len(then) or not np.allclose(now, then, rtol=0, atol=END_TOLERANCE):

@@ -18,8 +18,8 @@ from tailor.executive import domains
 from tailor.models.episodes.episodes import store_part
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.scaling.simulation import Overheads, speedup
-from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import modelled_actions
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.policy_runs import modelled_actions
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.software import Work
@@ -50,12 +50,12 @@ def run(console: Console, quick: bool) -> None:
 
 def _measured(domain: str, action: str, count: int) -> tuple[list[bytes], list[float]]:
     """Parts of a data set, and the CPU time of each."""
-    spec = gathering.DataSetSpec(domain, action, count * gathering.PART, 1, Path())
-    gathering.part_of(spec, 0)  # loads what any worker loads once
+    spec = random_episodes.DataSetSpec(domain, action, count * random_episodes.PART, 1, Path())
+    random_episodes.part_of(spec, 0)  # loads what any worker loads once
     parts, times_s = [], []
-    for first in range(0, spec.episodes, gathering.PART):
+    for first in range(0, spec.episodes, random_episodes.PART):
         started = time.process_time()
-        parts.append(gathering.part_of(spec, first)[0])
+        parts.append(random_episodes.part_of(spec, first)[0])
         times_s.append(time.process_time() - started)
     return parts, times_s
 

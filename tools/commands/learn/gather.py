@@ -16,12 +16,12 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.launch.package_check import check_package
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import DataSetSpec
-from tailor.tools.learning.steps import Step, counted, show
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import DataSetSpec
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
+from tailor.tools.parallel.steps import Step, counted, show
 
 EPILOG = """\
 examples:
@@ -92,7 +92,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
-    name = gathering.domain_of(arguments.robot)
+    name = random_episodes.domain_of(arguments.robot)
     check_package(name)
     check_profile(name, arguments.profile)
     out = arguments.out or Path("data") / arguments.robot
@@ -122,13 +122,15 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
         for action in actions_of(name, arguments.actions, beside)
     ]
     for spec in specs:
-        gathering.prepare(spec, arguments.resume)
+        random_episodes.prepare(spec, arguments.resume)
     figures = []
     for spec in specs:
         try:
             figures.append(_gather(spec, arguments.jobs, quiet=arguments.json))
         except KeyboardInterrupt:
-            left = sum(min(gathering.PART, spec.episodes - first) for first in gathering.missing_parts(spec))
+            left = sum(
+                min(random_episodes.PART, spec.episodes - first) for first in random_episodes.missing_parts(spec)
+            )
             Console(stderr=True).print(
                 f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues"
             )
@@ -140,14 +142,14 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     """Gather from recordings, or from whole runs with the current models."""
-    from tailor.tools.learning import run_gathering
+    from tailor.tools.learning.gathering import policy_runs
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
     if arguments.recordings:
         if arguments.profile:
             raise UsageError("--profile chooses a simulated body, expected none with --from")
-        counts = run_gathering.extract_from_recordings(domain, out, arguments.recordings)
+        counts = policy_runs.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
     scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))
@@ -155,12 +157,12 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     where = (arguments.seed, arguments.zoo, out, arguments.profile)
     if arguments.active:
-        from tailor.tools.learning.active_gathering import Active, run_active
+        from tailor.tools.learning.gathering.active_episodes import Active, run_active
 
         active = Active(domain, scenarios, arguments.episodes, arguments.pool, *where)
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
-    policy = run_gathering.Policy(domain, scenarios, arguments.episodes, *where)
-    running = run_gathering.run_policy(policy, arguments.jobs, arguments.resume)
+    policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where)
+    running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
     return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
 
 
@@ -188,19 +190,19 @@ def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[
     """
     declared = domains.load(domain).actions
     for action in requested:
-        gathering.check_action(domain, action, beside)
+        random_episodes.check_action(domain, action, beside)
     modelled = {each.duration_model.split("/")[0] for each in declared.values() if each.context or not beside}
     return list(dict.fromkeys(requested)) or sorted(modelled)
 
 
 def _gather(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
-    parts, started = gathering.missing_parts(spec), time.perf_counter()
-    left = sum(min(gathering.PART, spec.episodes - first) for first in parts)
+    parts, started = random_episodes.missing_parts(spec), time.perf_counter()
+    left = sum(min(random_episodes.PART, spec.episodes - first) for first in parts)
     simulated = busy = 0.0
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
         task = progress.add_task(spec.action, total=spec.episodes, completed=spec.episodes - left, rate="")
-        for count, sim_s, wall_s in gathering.gather(spec, parts, jobs):
+        for count, sim_s, wall_s in random_episodes.gather(spec, parts, jobs):
             simulated, busy = simulated + sim_s, busy + wall_s
             speed = simulated / busy if busy else 0.0
             progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")

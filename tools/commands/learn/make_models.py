@@ -13,8 +13,8 @@ from tailor.schemas.installed import robot_names
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.learning.making import Making, check, install, make
 from tailor.tools.learning.recipe import read_recipe, recipe_path
-from tailor.tools.learning.steps import Step, show
 from tailor.tools.learning.target_zoo import target_zoo
+from tailor.tools.parallel.steps import Step, show
 
 EPILOG = """\
 examples:

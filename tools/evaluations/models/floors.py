@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import NOISE_STREAM
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import NOISE_STREAM
 from tailor.tools.lockstep import action_run
 from tailor.tools.parallel.pool import completed, in_order
 
@@ -69,7 +69,7 @@ def noise_floor(robot: str, action: str, tasks: Array, seed: int, jobs: int) -> 
 
 
 def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -> tuple[Array, Array]:
-    domain = domains.load(gathering.domain_of(robot))
+    domain = domains.load(random_episodes.domain_of(robot))
     body = action_run.new_body(domain)
     runs = [
         action_run.run_action(body, domain, action, arguments, np.random.default_rng([NOISE_STREAM, seed, task, k]))

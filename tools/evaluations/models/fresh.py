@@ -7,9 +7,9 @@ from pathlib import Path
 
 from tailor.models.episodes.episodes import DataSet, read_data_set
 from tailor.schemas.installed.source import episodes_sha256
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
-from tailor.tools.learning.run_gathering import Policy, models_hash, run_policy
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.policy_runs import Policy, models_hash, run_policy
+from tailor.tools.learning.gathering.random_episodes import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
 
 
 def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: Path, stream: int) -> DataSet:
@@ -18,13 +18,13 @@ def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: P
     Raises:
       UsageError: The robot has no such action.
     """
-    domain = gathering.domain_of(robot)
-    gathering.check_action(domain, action)
+    domain = random_episodes.domain_of(robot)
+    random_episodes.check_action(domain, action)
     made_by = episodes_sha256(domain)[:12]  # changed controllers have other episodes
     folder = store / "episodes" / f"{robot}-{action}-{made_by}-{stream}-{seed}-{count}"
     spec = DataSetSpec(domain, action, count, seed, folder, stream)
-    gathering.prepare(spec, resume=True)
-    for _ in gathering.gather(spec, gathering.missing_parts(spec), jobs):
+    random_episodes.prepare(spec, resume=True)
+    for _ in random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs):
         pass
     return read_data_set(folder)
 
@@ -51,7 +51,7 @@ def chosen(robot: str, scenarios: Sequence[str], runs: int, seed: int, zoo: str,
       jobs: Processes.
       store: Folder for all data sets; other controllers or models, other data sets.
     """
-    domain = gathering.domain_of(robot)
+    domain = random_episodes.domain_of(robot)
     made_by, chosen_by = episodes_sha256(domain)[:12], models_hash(robot, zoo)[:12]
     folder = store / "policy" / "-".join([made_by, chosen_by, *scenarios, str(runs), str(seed)])
     for _ in run_policy(Policy(domain, tuple(scenarios), runs, seed, zoo, folder), jobs):

@@ -7,7 +7,7 @@ import argparse
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.pages.report import configure_report
 from tailor.tools.evaluations.seeds import seeds_of
-from tailor.tools.learning import gathering
+from tailor.tools.learning.gathering import random_episodes
 
 PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 
@@ -33,5 +33,5 @@ def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
 
 def seeded(arguments: argparse.Namespace) -> argparse.Namespace:
     """The arguments with the first seed of the robot's evaluations, and `provenance`, where it comes from."""
-    seeds = seeds_of(gathering.domain_of(arguments.robot), arguments)
+    seeds = seeds_of(random_episodes.domain_of(arguments.robot), arguments)
     return argparse.Namespace(**{**vars(arguments), "seed": seeds.first, "provenance": seeds.provenance})

@@ -29,7 +29,7 @@ from tailor.tools.evaluations.task_runs import paired, run_all
 from tailor.tools.learning.fresh_seeds import DIGITS
 from tailor.tools.learning.making import CHOOSING, Making, make
 from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
-from tailor.tools.learning.steps import show
+from tailor.tools.parallel.steps import show
 
 BESIDE = 40  # runs beside objects: too few for a good model, enough to start; the scenario needs no objects
 FIRST_RECIPE_SEED = 6_000  # of gathering; what ships and what replicas learn from has smaller ones

@@ -21,8 +21,8 @@ from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.learning import gathering
-from tailor.tools.learning.run_gathering import modelled_actions
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.policy_runs import modelled_actions
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]
@@ -41,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Gather both rounds, compare and publish the report; exit code 0."""
     arguments = seeded(arguments)
-    domain = gathering.domain_of(arguments.robot)
+    domain = random_episodes.domain_of(arguments.robot)
     runs = arguments.robot, arguments.scenarios, arguments.episodes
     where = arguments.zoo, arguments.jobs, arguments.store
     first = 1000 + arguments.seed % 1_000_000  # one round to learn from, and one to judge by

@@ -16,7 +16,7 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
 from tailor.tools.learning.making import CHOOSING, Making, make
 from tailor.tools.learning.recipe import Round, read_recipe, recipe_path
-from tailor.tools.learning.steps import show
+from tailor.tools.parallel.steps import show
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
 

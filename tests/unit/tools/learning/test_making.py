@@ -29,10 +29,10 @@ def trained(monkeypatch) -> list:
 
     monkeypatch.setattr(making_module, "_train", train)
     monkeypatch.setattr(making_module, "check_complete", lambda _: None)
-    monkeypatch.setattr(making_module.run_gathering, "models_hash", lambda *_: "models")
-    monkeypatch.setattr(making_module.gathering, "RANGE_DRAWS", 64)
-    monkeypatch.setattr(making_module.run_gathering, "_run", lambda *_: [])
-    monkeypatch.setattr(making_module.gathering, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
+    monkeypatch.setattr(making_module.policy_runs, "models_hash", lambda *_: "models")
+    monkeypatch.setattr(making_module.random_episodes, "RANGE_DRAWS", 64)
+    monkeypatch.setattr(making_module.policy_runs, "_run", lambda *_: [])
+    monkeypatch.setattr(making_module.random_episodes, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
     return requests
 
 
@@ -71,12 +71,14 @@ def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_othe
 
 def test_a_recipe_may_name_a_profile_of_the_body(tmp_path: Path, trained: list, monkeypatch) -> None:
     drawn = []
-    prepare = making_module.gathering.prepare
+    prepare = making_module.random_episodes.prepare
     monkeypatch.setattr(
-        making_module.gathering, "prepare", lambda spec, resume: (drawn.append(spec.profile), prepare(spec, resume))
+        making_module.random_episodes,
+        "prepare",
+        lambda spec, resume: (drawn.append(spec.profile), prepare(spec, resume)),
     )
     monkeypatch.setattr(
-        making_module.run_gathering, "run_policy", lambda policy, _: drawn.append(policy.profile) or iter((1,))
+        making_module.policy_runs, "run_policy", lambda policy, _: drawn.append(policy.profile) or iter((1,))
     )
     usual, degraded = (Making("agilo", replace(TINY, profile=name), tmp_path, 1, "make") for name in ("", "degraded"))
     list(make(degraded))

@@ -13,8 +13,9 @@ from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.launch import stale_models
 from tailor.tools.launch.stale_models import stale_models_warning
-from tailor.tools.learning import gathering, staleness
-from tailor.tools.learning.gathering import DataSetSpec
+from tailor.tools.learning import staleness
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import DataSetSpec
 from tailor.tools.learning.staleness import differing_episodes
 from tailor.tools.learning.staleness import staleness as staleness_of
 from tailor.tools.main import main
@@ -24,8 +25,8 @@ REACH = "executive/actions/reach.py"
 
 def gather(folder: Path, seed: int) -> Path:
     spec = DataSetSpec("arm", "reach", 8, seed, folder)
-    gathering.prepare(spec, resume=False)
-    list(gathering.gather(spec, [0], jobs=1))
+    random_episodes.prepare(spec, resume=False)
+    list(random_episodes.gather(spec, [0], jobs=1))
     return folder
 
 
@@ -80,8 +81,8 @@ def test_a_changed_source_without_episodes_to_compare_makes_a_model_stale(card, 
 
 def test_episodes_of_many_objects_a_run_are_compared_as_such(tmp_path: Path) -> None:
     spec = DataSetSpec("soccer", "goToPose", 1, 3, tmp_path, beside=True, objects=8)
-    gathering.prepare(spec, resume=False)
-    list(gathering.gather(spec, [0], jobs=1))
+    random_episodes.prepare(spec, resume=False)
+    list(random_episodes.gather(spec, [0], jobs=1))
     episodes = merge([read_data_set(tmp_path)]).manifest
     card = {"robot": "agilo", "action": "goToPose", "episodes": {"probe": episodes["probe"]}}
     assert card["episodes"]["probe"]["objects"] == 8
@@ -143,8 +144,8 @@ def test_a_robot_that_is_not_installed_is_told(card) -> None:
 
 def test_a_model_of_another_profile_is_judged_by_that_body(tmp_path: Path, altered) -> None:
     spec = DataSetSpec("soccer", "goToPose", 6, 1, tmp_path, profile="degraded")
-    gathering.prepare(spec, resume=False)
-    list(gathering.gather(spec, [0], jobs=1))
+    random_episodes.prepare(spec, resume=False)
+    list(random_episodes.gather(spec, [0], jobs=1))
     probe = merge([read_data_set(tmp_path)]).manifest["probe"]
     card = {"robot": "agilo", "action": "goToPose", "episodes": {"probe": probe}}
     assert differing_episodes(card) == ""

@@ -13,7 +13,7 @@ from tailor.executive.interfaces.outlet import at_rest, completed
 from tailor.schemas.errors import UsageError
 from tailor.schemas.kitchen.kinematics import BASE_RADIUS_M, HOME, tool_pose
 from tailor.schemas.messages.kitchen import KitchenTruth
-from tailor.tools.learning.object_gathering import runs_beside_objects
+from tailor.tools.learning.gathering.beside_objects import runs_beside_objects
 from tailor.tools.lockstep.action_run import new_body
 from tailor.tools.lockstep.samplers.free_drives import X_M, Y_M, free_drive
 from tailor.tools.lockstep.samplers.outlines import HAND_M, clearances

@@ -15,8 +15,8 @@ from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.models.inference import OnnxSuccess
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import DataSetSpec
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import DataSetSpec
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.learning.training_run import train_action
 from tailor.tools.lockstep import action_run
@@ -60,8 +60,8 @@ def beside(tmp_path_factory: pytest.TempPathFactory):
         for name, count in (("beside", COUNT), ("alone", COUNT_ALONE))
     ]
     for spec in specs:
-        gathering.prepare(spec, resume=False)
-        list(gathering.gather(spec, gathering.missing_parts(spec), jobs=1))
+        random_episodes.prepare(spec, resume=False)
+        list(random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs=1))
     yield tuple(spec.folder for spec in specs)
     patch.undo()
 
@@ -110,7 +110,7 @@ def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_p
 
 def test_action_without_a_context_is_refused() -> None:
     with pytest.raises(UsageError, match="'dribbleBall' of soccer has no context"):
-        gathering.check_action("soccer", "dribbleBall", beside=True)
+        random_episodes.check_action("soccer", "dribbleBall", beside=True)
 
 
 def test_episodes_of_a_clearance_model_are_known_again_and_the_action_s_are_not_confused(beside) -> None:

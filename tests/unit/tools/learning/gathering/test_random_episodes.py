@@ -10,8 +10,8 @@ import pytest
 
 from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import EVALUATION_STREAM, PART, DataSetSpec
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import EVALUATION_STREAM, PART, DataSetSpec
 from tailor.tools.lockstep import bodies
 from tailor.tools.main import main
 from tests.support import far_backend
@@ -28,7 +28,7 @@ def gather(folder: Path, *more: str, seed: int = 7) -> int:
 def few_draws():
     """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(gathering, "RANGE_DRAWS", 64)
+        patch.setattr(random_episodes, "RANGE_DRAWS", 64)
         yield
 
 
@@ -45,8 +45,8 @@ def parts(folder: Path) -> dict[str, bytes]:
 
 def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -> None:
     spec = DataSetSpec("soccer", "goToPose", COUNT, 7, tmp_path / "goToPose")
-    gathering.prepare(spec, resume=False)
-    list(gathering.gather(spec, [PART], jobs=1))  # the second part first; the process dies in the midst of the first
+    random_episodes.prepare(spec, resume=False)
+    list(random_episodes.gather(spec, [PART], jobs=1))  # the second part; the process dies in the first
     (tmp_path / "goToPose" / "part-000000-000020.1234.tmp").write_bytes(b"half a part")
     assert gather(tmp_path, "--resume") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
@@ -171,7 +171,7 @@ def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> N
     assert parts(tmp_path / "goToPose") == parts(gathered)
 
 
-RECORDING = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach-dribble.mcap"
+RECORDING = Path(__file__).parents[4] / "data" / "golden" / "soccer-approach-dribble.mcap"
 
 
 def test_a_recording_that_is_named_twice_is_refused(tmp_path: Path, capsys) -> None:

@@ -24,8 +24,8 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.world import World
-from tailor.tools.learning import gathering
-from tailor.tools.learning.gathering import DataSetSpec
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.random_episodes import DataSetSpec
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 from tailor.tools.parallel.pool import completed
@@ -79,7 +79,7 @@ def models_hash(robot: str, zoo: str) -> str:
 
 
 class Chosen(Protocol):
-    """Data sets of choices by the current models; see `Policy` and `active_gathering.Active`."""
+    """Data sets of choices by the current models; see `Policy` and `active_episodes.Active`."""
 
     @property
     def profile(self) -> str:
@@ -138,17 +138,17 @@ def prepare(
             "robot": loaded.robot,
             "domain": domain,
             "action": action,
-            "arguments": gathering.argument_ranges(loaded, DataSetSpec(domain, action, 0, 0, folder)),
-            **gathering.context_entry(loaded, action, names=()),
+            "arguments": random_episodes.argument_ranges(loaded, DataSetSpec(domain, action, 0, 0, folder)),
+            **random_episodes.context_entry(loaded, action, names=()),
             "runs": len(runs),
-            **gathering.source_entries(domain),
+            **random_episodes.source_entries(domain),
             "on_policy": True,
             **about,
         }
         for action in names
     }
     for place, manifest in manifests.items():
-        gathering.check_resumable(place, manifest, resume)
+        random_episodes.check_resumable(place, manifest, resume)
     for place, manifest in manifests.items():
         place.mkdir(parents=True, exist_ok=True)
         write_manifest(place, manifest)
@@ -165,7 +165,7 @@ def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode
     for action in modelled_actions(domain):
         mine = [episode for name, episode in cut if name == action]
         if mine:
-            names = gathering.argument_names(loaded, action)
+            names = random_episodes.argument_names(loaded, action)
             write_part(folder / action / f"part-{part}.parquet", mine, names)
 
 

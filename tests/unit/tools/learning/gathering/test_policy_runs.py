@@ -3,7 +3,7 @@
 from collections import Counter
 from pathlib import Path
 
-from tailor.tools.learning.run_gathering import Policy
+from tailor.tools.learning.gathering.policy_runs import Policy
 
 
 def test_every_run_has_a_seed_of_its_own():

@@ -27,7 +27,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
-from tailor.tools.learning.object_gathering import runs_beside_objects
+from tailor.tools.learning.gathering.beside_objects import runs_beside_objects
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
@@ -44,7 +44,7 @@ RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
 class DataSetSpec:
     """One data set to gather: episodes of one action with random arguments.
 
-    With `objects` of the action's context, each run gives as many episodes: see `object_gathering.py`.
+    With `objects` of the action's context, each run gives as many episodes: see `beside_objects.py`.
     """
 
     domain: str

@@ -8,7 +8,7 @@ import pytest
 from tailor.executive import domains
 from tailor.schemas.messages.soccer import OpponentsTruth
 from tailor.simnodes.agilo.scene import RAIL
-from tailor.tools.learning.object_gathering import runs_beside_objects
+from tailor.tools.learning.gathering.beside_objects import runs_beside_objects
 from tailor.tools.lockstep.action_run import new_body, run_action
 from tailor.tools.lockstep.samplers import opponents
 from tailor.tools.lockstep.task_sampler import sampler_of

@@ -1,0 +1,1 @@
+"""Gathers episodes of single actions: at random, beside objects, by choice of the models, from recorded runs."""
