@@ -12,7 +12,8 @@ from tailor.executive import domains
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.policy_runs import modelled_actions
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 
 def run(console: Console, quick: bool) -> None:
@@ -26,7 +27,7 @@ def run(console: Console, quick: bool) -> None:
         robot = domains.load(name).robot
         for action in modelled_actions(name):
             with tempfile.TemporaryDirectory() as folder:
-                spec = random_episodes.DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
+                spec = DataSetSpec(name, action, 40 if quick else 200, 1, Path(folder) / "episodes")
                 random_episodes.prepare(spec, resume=False)
                 parts = list(random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs=1))
             count, simulated, wall = (sum(column) for column in zip(*parts, strict=True))

@@ -21,7 +21,7 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.learning.gathering.policy_runs import cached_models
+from tailor.tools.learning.gathering.choosing_models import cached_models
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import events_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tailor.executive import domains
 from tailor.schemas.installed.source import runs_sha256
-from tailor.tools.learning.gathering.policy_runs import models_hash
+from tailor.tools.learning.gathering.choosing_models import models_hash
 
 DIGITS = 7  # of the hash: below 2^28
 

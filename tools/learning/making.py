@@ -19,9 +19,9 @@ from tailor.models.cards.card import KINDS
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
-from tailor.tools.learning.gathering import policy_runs, random_episodes
+from tailor.tools.learning.gathering import data_set_spec, policy_runs, random_episodes, run_data_sets
 from tailor.tools.learning.gathering.active_episodes import Active, run_active
-from tailor.tools.learning.gathering.random_episodes import DataSetSpec
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.training_request import (
@@ -112,8 +112,8 @@ def check(making: Making) -> None:
     """
     check_recipe(making.robot, making.recipe)
     request, domain = checked(_request(making, making.zoo, (), ())), domains.load(making.domain)
-    for action in policy_runs.modelled_actions(making.domain):
-        feature_spaces(request, tuple(random_episodes.argument_names(domain, action)), Path(action))
+    for action in run_data_sets.modelled_actions(making.domain):
+        feature_spaces(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
 
 
 def make(making: Making) -> Iterator[Step]:
@@ -157,7 +157,7 @@ def install(made: Path, zoo: Path, robot: str) -> None:
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
     """Data sets of random episodes: action, number, folder, and whether each is beside an object."""
     recipe, declared = making.recipe, domains.load(making.domain).actions
-    actions = policy_runs.modelled_actions(making.domain)
+    actions = run_data_sets.modelled_actions(making.domain)
     wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
     if recipe.beside:
         contexts = {action: declared[action].context for action in actions}

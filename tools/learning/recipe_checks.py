@@ -6,7 +6,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning.gathering import policy_runs, random_episodes
+from tailor.tools.learning.gathering import random_episodes, run_data_sets
 from tailor.tools.learning.recipe import Recipe
 from tailor.tools.lockstep.bodies import check_profile
 
@@ -19,7 +19,7 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     """
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
-    actions = policy_runs.modelled_actions(domain)
+    actions = run_data_sets.modelled_actions(domain)
     for each in recipe.random:
         if each.action not in actions:
             raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")

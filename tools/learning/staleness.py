@@ -18,6 +18,7 @@ from tailor.models.episodes.sources import end_of
 from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.lockstep.bodies import body_of
 
 END_TOLERANCE = 1e-4  # seconds, metres, radians: other builds of the physics round otherwise
@@ -51,7 +52,7 @@ def differing_episodes(card: Card) -> str:
         return f"{name} has no action '{action}'"
     ends, objects = probe["ends"], probe.get("objects", 0)
     drawn = (len(ends), probe["seed"], Path(), probe["stream"], bool(probe.get("beside")), objects)
-    spec = random_episodes.DataSetSpec(name, action, *drawn, probe.get("profile", ""))
+    spec = DataSetSpec(name, action, *drawn, probe.get("profile", ""))
     runs = range(ceil(len(ends) / max(1, objects)))
     episodes, _ = random_episodes.run_episodes(spec, domain, body_of(name, spec.profile), runs)
     for number, (episode, then) in enumerate(zip(episodes, ends, strict=False)):

@@ -19,7 +19,8 @@ from tailor.models.episodes.episodes import store_part
 from tailor.schemas.installed import domain_names
 from tailor.tools.benchmarks.scaling.simulation import Overheads, speedup
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.policy_runs import modelled_actions
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.software import Work
@@ -50,7 +51,7 @@ def run(console: Console, quick: bool) -> None:
 
 def _measured(domain: str, action: str, count: int) -> tuple[list[bytes], list[float]]:
     """Parts of a data set, and the CPU time of each."""
-    spec = random_episodes.DataSetSpec(domain, action, count * random_episodes.PART, 1, Path())
+    spec = DataSetSpec(domain, action, count * random_episodes.PART, 1, Path())
     random_episodes.part_of(spec, 0)  # loads what any worker loads once
     parts, times_s = [], []
     for first in range(0, spec.episodes, random_episodes.PART):

@@ -17,7 +17,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.random_episodes import DataSetSpec
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
@@ -142,14 +142,14 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     """Gather from recordings, or from whole runs with the current models."""
-    from tailor.tools.learning.gathering import policy_runs
+    from tailor.tools.learning.gathering import policy_runs, recorded_runs
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
     if arguments.recordings:
         if arguments.profile:
             raise UsageError("--profile chooses a simulated body, expected none with --from")
-        counts = policy_runs.extract_from_recordings(domain, out, arguments.recordings)
+        counts = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
         return 0
     scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))

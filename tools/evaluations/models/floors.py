@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.random_episodes import NOISE_STREAM
+from tailor.tools.learning.gathering.data_set_spec import NOISE_STREAM
 from tailor.tools.lockstep import action_run
 from tailor.tools.parallel.pool import completed, in_order
 

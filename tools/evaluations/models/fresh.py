@@ -8,8 +8,9 @@ from pathlib import Path
 from tailor.models.episodes.episodes import DataSet, read_data_set
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.policy_runs import Policy, models_hash, run_policy
-from tailor.tools.learning.gathering.random_episodes import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
+from tailor.tools.learning.gathering.choosing_models import models_hash
+from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
+from tailor.tools.learning.gathering.policy_runs import Policy, run_policy
 
 
 def episodes(robot: str, action: str, count: int, seed: int, jobs: int, store: Path, stream: int) -> DataSet:

@@ -19,7 +19,7 @@ from tailor.tools.evaluations.models import fresh, model_rows
 from tailor.tools.evaluations.models.model_rows import Row
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
-from tailor.tools.learning.gathering.policy_runs import modelled_actions
+from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
 REMARKS = (

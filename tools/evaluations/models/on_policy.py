@@ -22,7 +22,7 @@ from tailor.tools.evaluations.models.learned import configure_learned, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.policy_runs import modelled_actions
+from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 LEVEL = 0.9
 SCENARIOS = ["approach-dribble", "waypoints"]

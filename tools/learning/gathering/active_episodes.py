@@ -18,8 +18,9 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import Episode, write_part
-from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.policy_runs import prepare_chosen
+from tailor.tools.learning.gathering import data_set_spec
+from tailor.tools.learning.gathering.choosing_models import prepare_chosen
+from tailor.tools.learning.gathering.random_episodes import PART
 from tailor.tools.learning.gathering.refined_choices import Choice, refined_choices
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
@@ -27,7 +28,7 @@ from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.steps import Step, counted
 
 FIRST_SEED = 3_000_000_000  # of situations; disjoint from those of evaluations and of on-policy runs
-ACTIVE_STREAM = 14  # first word of the seeds of the episodes; random_episodes.py has the others
+ACTIVE_STREAM = 14  # first word of the seeds of the episodes; data_set_spec.py has the others
 CHUNK = 10  # situations that are written together
 
 
@@ -80,11 +81,9 @@ def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]
     left = sum(min(CHUNK, total - first) for first in missing)
     yield from counted("situations refined", _refine_all(active, missing, jobs), total, total - left)
     for name, choices in selected(_pool(active), active.episodes).items():
-        parts = [
-            first for first in range(0, len(choices), random_episodes.PART) if not _part(active, name, first).exists()
-        ]
+        parts = [first for first in range(0, len(choices), PART) if not _part(active, name, first).exists()]
         ran = _run_all(active, name, choices, parts, jobs)
-        left = sum(min(random_episodes.PART, len(choices) - first) for first in parts)
+        left = sum(min(PART, len(choices) - first) for first in parts)
         yield from counted(f"{name}: choices that models disagree on", ran, len(choices), len(choices) - left)
 
 
@@ -138,8 +137,8 @@ def _run_all(
     active: Active, data_set: str, choices: Sequence[Choice], missing: Sequence[int], jobs: int
 ) -> Iterator[int]:
     """Write the episodes of the missing parts; yields numbers of episodes."""
-    names = random_episodes.argument_names(domains.load(active.domain), data_set)
-    calls = [(active, data_set, first, choices[first : first + random_episodes.PART]) for first in missing]
+    names = data_set_spec.argument_names(domains.load(active.domain), data_set)
+    calls = [(active, data_set, first, choices[first : first + PART]) for first in missing]
     for number, episodes in completed(_run, calls, jobs):
         write_part(_part(active, data_set, missing[number]), episodes, names)
         yield len(episodes)

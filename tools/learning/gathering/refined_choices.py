@@ -14,7 +14,7 @@ from tailor.executive.replay import RecordedTick
 from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals
 from tailor.simnodes.body import Body
 from tailor.simnodes.world import World
-from tailor.tools.learning.gathering.policy_runs import UNPROVEN, cached_models
+from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models
 
 DECISION_S = 5.0  # by then the first refinement is finished, or the situation is left out
 MIN_PREDICTED_S = 0.3  # a shorter action has no ticks to learn from

@@ -8,6 +8,7 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.learning import making as making_module
+from tailor.tools.learning.gathering import choosing_models, manifests
 from tailor.tools.learning.making import Making, check, install, make
 from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
@@ -29,8 +30,8 @@ def trained(monkeypatch) -> list:
 
     monkeypatch.setattr(making_module, "_train", train)
     monkeypatch.setattr(making_module, "check_complete", lambda _: None)
-    monkeypatch.setattr(making_module.policy_runs, "models_hash", lambda *_: "models")
-    monkeypatch.setattr(making_module.random_episodes, "RANGE_DRAWS", 64)
+    monkeypatch.setattr(choosing_models, "models_hash", lambda *_: "models")
+    monkeypatch.setattr(manifests, "RANGE_DRAWS", 64)
     monkeypatch.setattr(making_module.policy_runs, "_run", lambda *_: [])
     monkeypatch.setattr(making_module.random_episodes, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
     return requests

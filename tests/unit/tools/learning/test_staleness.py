@@ -15,7 +15,7 @@ from tailor.tools.launch import stale_models
 from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.learning import staleness
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.random_episodes import DataSetSpec
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.staleness import differing_episodes
 from tailor.tools.learning.staleness import staleness as staleness_of
 from tailor.tools.main import main

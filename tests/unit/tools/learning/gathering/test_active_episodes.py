@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tailor.models.episodes.episodes import read_data_set
-from tailor.tools.learning.gathering import active_episodes, random_episodes
+from tailor.tools.learning.gathering import active_episodes, manifests
 from tailor.tools.learning.gathering.active_episodes import Active, run_active, selected
 from tailor.tools.learning.gathering.refined_choices import Choice
 from tailor.tools.main import main
@@ -29,7 +29,7 @@ def test_the_choices_with_the_largest_disagreement_are_selected() -> None:
 def few_draws():
     """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(random_episodes, "RANGE_DRAWS", 64)
+        patch.setattr(manifests, "RANGE_DRAWS", 64)
         yield
 
 
@@ -70,13 +70,13 @@ def test_another_pool_is_refused(gathered: Path, capsys) -> None:
 
 
 def test_seeds_of_situations_are_none_of_other_streams() -> None:
-    from tailor.tools.learning.gathering.policy_runs import FIRST_SEED
-    from tailor.tools.learning.gathering.random_episodes import (
+    from tailor.tools.learning.gathering.data_set_spec import (
         EVALUATION_STREAM,
         NOISE_STREAM,
         POLICY_STREAM,
         TRAINING_STREAM,
     )
+    from tailor.tools.learning.gathering.policy_runs import FIRST_SEED
 
     streams = (EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM, TRAINING_STREAM)
     assert active_episodes.ACTIVE_STREAM not in streams

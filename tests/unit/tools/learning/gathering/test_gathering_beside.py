@@ -16,7 +16,7 @@ from tailor.models.inference import OnnxSuccess
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.random_episodes import DataSetSpec
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.learning.training_run import train_action
 from tailor.tools.lockstep import action_run

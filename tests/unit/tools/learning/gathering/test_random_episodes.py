@@ -10,8 +10,9 @@ import pytest
 
 from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning.gathering import random_episodes
-from tailor.tools.learning.gathering.random_episodes import EVALUATION_STREAM, PART, DataSetSpec
+from tailor.tools.learning.gathering import manifests, random_episodes
+from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, DataSetSpec
+from tailor.tools.learning.gathering.random_episodes import PART
 from tailor.tools.lockstep import bodies
 from tailor.tools.main import main
 from tests.support import far_backend
@@ -28,7 +29,7 @@ def gather(folder: Path, *more: str, seed: int = 7) -> int:
 def few_draws():
     """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(random_episodes, "RANGE_DRAWS", 64)
+        patch.setattr(manifests, "RANGE_DRAWS", 64)
         yield
 
 

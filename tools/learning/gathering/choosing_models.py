@@ -1,0 +1,74 @@
+"""Data sets whose episodes models choose: the models, and their hash in the manifests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Protocol
+
+from tailor.executive import domains
+from tailor.executive.composition import load_models
+from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare
+from tailor.tools.parallel.software import models_sha256
+
+UNPROVEN = RefinementSettings(certify_checks=0)  # certificates take time and do not change choices
+
+
+@lru_cache(maxsize=2)
+def cached_models(robot: str, zoo: str) -> Models:
+    """Models, loaded once per process."""
+    return load_models(robot, zoo)
+
+
+def models_hash(robot: str, zoo: str) -> str:
+    """SHA-256 over the models that choose the arguments: other models give other episodes."""
+    return models_sha256(cached_models(robot, zoo))
+
+
+class Chosen(Protocol):
+    """Data sets of choices by the current models; see `policy_runs.Policy` and `active_episodes.Active`."""
+
+    @property
+    def profile(self) -> str:
+        """Of the body; empty: the one that ships."""
+        ...
+
+    @property
+    def domain(self) -> str:
+        """Name of the domain."""
+        ...
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """Where they choose."""
+        ...
+
+    @property
+    def seed(self) -> int:
+        """Of situations and noise."""
+        ...
+
+    @property
+    def zoo(self) -> str:
+        """Folder of the models."""
+        ...
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the data sets."""
+        ...
+
+
+def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], resume: bool) -> None:
+    """Create the folders of data sets that models choose; see `prepare`."""
+    entries = {
+        **about,
+        "seed": chosen.seed,
+        "scenarios": list(chosen.scenarios),
+        **({"profile": chosen.profile} if chosen.profile else {}),
+        "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
+    }
+    prepare(chosen.domain, chosen.folder, modelled_actions(chosen.domain), entries, runs, resume)
