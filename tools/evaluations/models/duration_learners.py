@@ -35,7 +35,8 @@ def run(arguments: argparse.Namespace) -> int:
     arguments = seeded(arguments)
     rows = [row for action in arguments.actions for row in _rows(action, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
-    publish_report(Report("duration-learners", "Duration learners", rows, remarks), arguments.json, arguments.report)
+    report = Report("duration-learners", "Duration learners", rows, remarks, {}, arguments.provenance)
+    publish_report(report, arguments.json, arguments.report)
     return 0
 
 

@@ -45,7 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append(_row("WEKA J48", predicted.astype(float), 0.5, observed))
     ratio = f"a missed failure costs {learners.COST_RATIO:g} false alarms"
     remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; {ratio}; fresh runs"]
-    publish_report(Report("failure-learners", "Failure learners", rows, remarks), arguments.json, arguments.report)
+    report = Report("failure-learners", "Failure learners", rows, remarks, {}, arguments.provenance)
+    publish_report(report, arguments.json, arguments.report)
     return 0
 
 

@@ -45,9 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
     remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
     plots = _plots(rows, test, arguments.report) if arguments.report else {}
-    publish_report(
-        Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots), arguments.json, arguments.report
-    )
+    report = Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots, arguments.provenance)
+    publish_report(report, arguments.json, arguments.report)
     errors = [row["mae_s"] for row in rows[:3]]
     return 0 if errors == sorted(errors, reverse=True) else 1
 

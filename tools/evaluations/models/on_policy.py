@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
     ]
-    report = Report("on-policy", "One on-policy round", rows, remarks, provenance=arguments.provenance)
+    report = Report("on-policy", "One on-policy round", rows, remarks, {}, arguments.provenance)
     publish_report(report, arguments.json, arguments.report)
     return 0
 

@@ -7,7 +7,7 @@ import html
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +33,9 @@ class Report:
     name: str  # "table3"
     title: str
     rows: Sequence[Row]
-    remarks: Sequence[str] = ()
-    plots: Mapping[str, Path] = field(default_factory=dict)  # description -> PNG
-    provenance: Mapping[str, Any] = field(default_factory=dict)  # seeds, and hashes of what was evaluated
+    remarks: Sequence[str]
+    plots: Mapping[str, Path]  # description -> PNG
+    provenance: Mapping[str, Any]  # seeds, and hashes of what was evaluated
 
 
 def configure_report(parser: argparse.ArgumentParser) -> None:

@@ -32,7 +32,9 @@ def module(name, domains, run):
     def really_run(arguments):
         CALLS.append(name)
         assert getattr(arguments, "places", []) == []
-        publish_report(Report(name, f"The {name} one", [{"scenario": name, "n": 3}]), arguments.json, arguments.report)
+        publish_report(
+            Report(name, f"The {name} one", [{"scenario": name, "n": 3}], (), {}, {}), arguments.json, arguments.report
+        )
         return run()
 
     made.configure, made.run = configure, really_run
@@ -119,7 +121,7 @@ def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, ca
 
 def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     rows = [{"scenario": f"row-{k}"} for k in range(10)]
-    publish_report(Report("first", "The first one", rows), True, tmp_path)
+    publish_report(Report("first", "The first one", rows, (), {}, {}), True, tmp_path)
     text = write_overview(tmp_path, ["first"]).read_text()
     assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
 
@@ -133,7 +135,9 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
 
 def test_what_is_no_number_is_null_in_json(capsys):
     publish_report(
-        Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}]), True, None
+        Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}], (), {}, {}),
+        True,
+        None,
     )
     said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]
