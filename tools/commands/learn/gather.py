@@ -149,8 +149,10 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.recordings:
         if arguments.profile:
             raise UsageError("--profile chooses a simulated body, expected none with --from")
-        counts = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
-        print(json.dumps(counts) if arguments.json else f"{out}: {counts}")
+        extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
+        for line in extracted.left_out:
+            Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
+        print(json.dumps(extracted.counts) if arguments.json else f"{out}: {extracted.counts}")
         return 0
     scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))
     for scenario in scenarios:

@@ -3,46 +3,72 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tailor.executive import domains
-from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode
-from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, Message, Subgoals
-from tailor.schemas.topics import TOPICS
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning.gathering.recorded_episodes import RecordedEpisodes
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare, write
-from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
-
-READ = (Subgoals, Contexts, ExecStatus, ActionFinished)  # besides sensors and ground truth
 
 
-def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> dict[str, int]:
+@dataclass(frozen=True, slots=True)
+class Extracted:
+    """What recordings gave.
+
+    Attributes:
+      counts: Number of episodes by action.
+      left_out: A line for each recording and topic with messages that could not be used.
+    """
+
+    counts: Mapping[str, int]
+    left_out: tuple[str, ...]
+
+
+def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> Extracted:
     """Extract data sets from recordings.
 
-    Returns:
-      Number of episodes by action.
+    Messages that cannot be decoded, e.g. of values that are not finite, are left out: see `RecordedEpisodes`.
 
     Raises:
       UsageError: A file is not a recording of an executive's run, none holds a finished action, two hold the same
         one, or the folder holds episodes already; nothing is written then.
     """
     robot = domains.load(domain)
-    cut = [EpisodeExtractor(robot).read(_messages(path, _types_of(robot))) for path in recordings]
+    read = [RecordedEpisodes(path, robot) for path in recordings]
+    left_out = tuple(line for each in read for line in _lines(each))
+    cut = [each.episodes for each in read]
     if not any(cut):
-        raise UsageError(f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run")
+        without = "".join(f"; {line}" for line in left_out)
+        raise UsageError(
+            f"{', '.join(map(str, recordings))}: no finished action, expected the recording of a run{without}"
+        )
     _check_distinct(cut, recordings)
-    about = {"source": "recordings", "recordings": [path.name for path in recordings]}
     counts = Counter(action for one in cut for action, _ in one)
-    prepare(domain, folder, sorted(counts), about, recordings, resume=False)
+    prepare(domain, folder, sorted(counts), _about(read), recordings, resume=False)
     number = 0
     for one in cut:
         numbered = [(action, replace(e, number=number + k)) for k, (action, e) in enumerate(one)]
         write(domain, folder, f"{number:06d}", numbered)
         number += len(one)
-    return {action: counts[action] for action in modelled_actions(domain)}
+    return Extracted({action: counts[action] for action in modelled_actions(domain)}, left_out)
+
+
+def _about(read: Sequence[RecordedEpisodes]) -> dict[str, Any]:
+    """Entries of the manifests."""
+    left_out = {each.path.name: dict(each.left_out) for each in read if each.left_out}
+    names = [each.path.name for each in read]
+    return {"source": "recordings", "recordings": names, **({"left_out": left_out} if left_out else {})}
+
+
+def _lines(read: RecordedEpisodes) -> Iterator[str]:
+    for key, count in read.left_out.items():
+        messages = f"{count} message" if count == 1 else f"{count} messages"
+        lost = "" if key in read.sensors else ", with the action that ran"
+        yield f"{read.path}: left out {messages} of {key}{lost} ({', '.join(sorted(read.reasons[key]))})"
 
 
 def _check_distinct(cut: Sequence[Sequence[tuple[str, Episode]]], recordings: Sequence[Path]) -> None:
@@ -54,24 +80,3 @@ def _check_distinct(cut: Sequence[Sequence[tuple[str, Episode]]], recordings: Se
             if key in known:
                 raise UsageError(f"{path}: holds the same {key[0]} as {known[key]}, expected each run once")
         known |= dict.fromkeys(keys, path)
-
-
-def _types_of(domain: Domain) -> frozenset[type[Message]]:
-    """Types of the messages that an extractor may read: the executive's, the robot's sensors, and ground truth."""
-    truth = (name for name, topic in TOPICS.items() if topic.source == "simulator")
-    return frozenset((*READ, *(TOPICS[name].type for name in (*domain.sensors, *truth))))
-
-
-def _messages(path: Path, types: Collection[type[Message]]) -> Iterator[Message]:
-    """Messages of the given types, in the order in which they were published."""
-    from tailor.runtime.recordings.recording import open_recording
-    from tailor.schemas.codec import decode
-    from tailor.schemas.typesystem import type_of
-
-    for recorded in sorted(open_recording(path).messages(), key=lambda m: m.publish_ns):
-        kind = type_of(recorded.ros_type)
-        if kind is not None and kind in types:
-            message = decode(kind, recorded.data)
-            if isinstance(message, Rejected):
-                raise UsageError(f"{path}: {recorded.key} number {recorded.sequence}: {message.reason}")
-            yield message

@@ -13,7 +13,6 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import manifests, random_episodes
 from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, DataSetSpec
 from tailor.tools.learning.gathering.random_episodes import PART
-from tailor.tools.lockstep import bodies
 from tailor.tools.main import main
 from tests.support import far_backend
 
@@ -170,40 +169,3 @@ def test_another_joblib_backend_gives_the_same_bits(gathered: Path, tmp_path: Pa
 def test_two_processes_give_the_bits_of_one(gathered: Path, tmp_path: Path) -> None:
     assert gather(tmp_path, "--jobs", "2") == 0
     assert parts(tmp_path / "goToPose") == parts(gathered)
-
-
-RECORDING = Path(__file__).parents[4] / "data" / "golden" / "soccer-approach-dribble.mcap"
-
-
-def test_a_recording_that_is_named_twice_is_refused(tmp_path: Path, capsys) -> None:
-    copy = shutil.copy(RECORDING, tmp_path / "copy.mcap")
-    for twice in (RECORDING, copy):
-        assert main(["gather", "agilo", "--from", str(RECORDING), str(twice), "--out", str(tmp_path / "x")]) == 2
-        message = f"{twice}: holds the same approachBall as {RECORDING}, expected each run once"
-        assert message in capsys.readouterr().err
-    assert not (tmp_path / "x").exists()
-
-
-def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_path: Path, capsys) -> None:
-    cut = ["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]
-    assert main(cut) == 0
-    counts = json.loads(capsys.readouterr().out)
-    assert counts["approachBall"] == 1
-    assert {path.name for path in tmp_path.iterdir()} == {action for action, count in counts.items() if count}
-    assert main(cut) == 2  # what is there is not overwritten
-    assert "holds episodes already" in capsys.readouterr().err
-
-
-def test_recordings_need_no_simulated_body(tmp_path: Path, monkeypatch) -> None:
-    def none(_: object) -> None:
-        raise UsageError("the robot has no body")
-
-    bodies.body_of.cache_clear()
-    monkeypatch.setattr(bodies, "new_body", none)
-    assert main(["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path), "--json"]) == 0
-
-
-def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:
-    assert main(["gather", "powercube", "--from", str(RECORDING), "--out", str(tmp_path / "x")]) == 2
-    assert "recorded action 'approachBall', expected one of powercube: reach" in capsys.readouterr().err
-    assert not (tmp_path / "x").exists()

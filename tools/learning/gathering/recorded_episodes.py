@@ -1,0 +1,85 @@
+"""Reads the episodes of one recording; messages that cannot be decoded are counted and left out."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from tailor.executive.interfaces.domain import Domain
+from tailor.models.episodes.episodes import Episode
+from tailor.runtime.recordings.recording import Recorded, open_recording
+from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, Message, Subgoals
+from tailor.schemas.topics import TOPICS
+from tailor.schemas.typesystem import type_of
+from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
+
+READ = (Subgoals, Contexts, ExecStatus, ActionFinished)  # besides sensors and ground truth
+# An action that the extractor forgets, and goals that it must not take for those of what runs now.
+FORGOTTEN = (ActionFinished(0, 0, "", 0, "aborted", "", 0.0, 0.0), Subgoals(0, 0, 0))
+
+
+class RecordedEpisodes:
+    """The episodes of one recording.
+
+    The executive rejected a damaged sensor message as well and believed on without it. So its episode stays; only the
+    drives' work is unknown, as it is summed over all states of motion. A damaged message of the executive, or of the
+    ground truth, may hide a goal, a tick or a failure: the action that ran is left out.
+
+    Args:
+      path: Recording of a run.
+      domain: Domain of the recorded robot.
+
+    Attributes:
+      episodes: Name of the duration model's data set, and the episode.
+      left_out: Number of messages that could not be decoded, by key.
+      reasons: Their reasons, by key.
+      sensors: Keys of sensors among them.
+
+    Raises:
+      UsageError: The file is no recording, or of another robot's run.
+    """
+
+    def __init__(self, path: Path, domain: Domain) -> None:
+        self.path = path
+        self.episodes: list[tuple[str, Episode]] = []
+        self.left_out: Counter[str] = Counter()
+        self.reasons: defaultdict[str, set[str]] = defaultdict(set)
+        self.sensors: set[str] = set()
+        truth = (name for name, topic in TOPICS.items() if topic.source == "simulator")
+        self._sensor_types = frozenset(TOPICS[name].type for name in domain.sensors)
+        self._types = self._sensor_types | {*READ, *(TOPICS[name].type for name in truth)}
+        self._read(domain)
+
+    def _read(self, domain: Domain) -> None:
+        extractor, moved_unseen = EpisodeExtractor(domain), False
+        for message in self._messages():
+            moved_unseen |= message is None
+            found = () if message is None else extractor.read([message])[len(self.episodes) :]
+            self.episodes += [(name, replace(e, work_j=None) if moved_unseen else e) for name, e in found]
+            if isinstance(message, ActionFinished):
+                moved_unseen = False
+
+    def _messages(self) -> Iterator[Message | None]:
+        """Messages in the order in which they were published; None for a sensor's that is left out."""
+        for recorded in sorted(open_recording(self.path).messages(), key=lambda m: m.publish_ns):
+            kind = type_of(recorded.ros_type)
+            if kind is None or kind not in self._types:
+                continue
+            message = decode(kind, recorded.data)
+            if not isinstance(message, Rejected):
+                yield message
+            else:
+                yield from self._substitutes(recorded, kind, message)
+
+    def _substitutes(self, recorded: Recorded, kind: type[Message], rejected: Rejected) -> tuple[Message | None, ...]:
+        """What is read in place of a message that is left out."""
+        self.left_out[recorded.key] += 1
+        self.reasons[recorded.key].add(rejected.reason)
+        if kind not in self._sensor_types:
+            return FORGOTTEN
+        self.sensors.add(recorded.key)
+        return (None,)
