@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
@@ -19,8 +20,12 @@ from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec, columns_of, draw
 
+Array = NDArray[np.float64]
+
 RANGE_DRAWS = 4096  # samples that determine the ranges of the controller's arguments
-RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it
+RANGE_STEP = 0.05  # ranges are rounded outwards to multiples of it, in any unit of an argument,
+MIN_STEPS, MAX_STEPS = 2, 400  # unless they had fewer or more of these steps
+NEAR = 0.01  # of a declared range: samples that near to its end stand for the end itself
 # entries of a manifest that may differ when a data set is resumed; `source_sha256` stands for the files
 COUNTS = ("episodes", "runs", "software", "source_files")
 
@@ -63,11 +68,26 @@ def argument_ranges(domain: Domain, spec: DataSetSpec) -> list[dict[str, Any]]:
     """Name, unit and range of each column of a data set's arguments, from samples."""
     rng = np.random.default_rng(0)
     drawn = np.stack([draw(spec, domain, rng) for _ in range(RANGE_DRAWS)])
-    low, high = np.floor(drawn.min(axis=0) / RANGE_STEP), np.ceil(drawn.max(axis=0) / RANGE_STEP)
+    lower, upper = _rounded(drawn.min(axis=0), drawn.max(axis=0))
+    for k, parameter in enumerate(domain.actions[spec.action].parameters):
+        near = NEAR * (parameter.upper - parameter.lower)
+        if drawn[:, k].min() <= parameter.lower + near:
+            lower[k] = min(lower[k], parameter.lower)
+        if drawn[:, k].max() >= parameter.upper - near:
+            upper[k] = max(upper[k], parameter.upper)
     return [
-        {**column, "lower": round(a * RANGE_STEP, 9), "upper": round(b * RANGE_STEP, 9)}
-        for column, a, b in zip(columns_of(spec, domain), low.tolist(), high.tolist(), strict=True)
+        {**column, "lower": round(a, 9), "upper": round(b, 9)}
+        for column, a, b in zip(columns_of(spec, domain), lower.tolist(), upper.tolist(), strict=True)
     ]
+
+
+def _rounded(lower: Array, upper: Array) -> tuple[Array, Array]:
+    """Ends of ranges, shape (k,), rounded outwards; a step is `RANGE_STEP`, or tenths or tens of it, by the width."""
+    width = np.where(upper > lower, upper - lower, 1.0)
+    tenths = np.floor(np.log10(width / (MIN_STEPS * RANGE_STEP))).clip(max=0)
+    tens = np.ceil(np.log10(width / (MAX_STEPS * RANGE_STEP))).clip(min=0)
+    step = RANGE_STEP * 10.0 ** (tenths + tens)
+    return np.floor(lower / step) * step, np.ceil(upper / step) * step
 
 
 def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> None:
