@@ -5,7 +5,7 @@ One data set teaches two kinds of models: those of the action by itself, and its
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from tailor.models.episodes.episodes import DataSet, Episode
@@ -32,6 +32,20 @@ def beside_context(data: DataSet) -> DataSet | None:
     if not names:
         return None
     return DataSet(data.manifest, _kept(data, lambda episode: episode.failure in ("", failure)), data.sha256)
+
+
+def run_numbers(sets: Sequence[DataSet]) -> list[int]:
+    """Number of the run of each episode of all sets, in order; runs are counted from 0 through all sets.
+
+    A run gives as many episodes as the manifest of its set has `objects`: one, if it has no such entry.
+    """
+    runs = [
+        (which, episode.number // data.manifest.get("objects", 1))
+        for which, data in enumerate(sets)
+        for episode in data.episodes
+    ]
+    number = {run: k for k, run in enumerate(sorted(set(runs)))}
+    return [number[run] for run in runs]
 
 
 def _declared(data: DataSet) -> tuple[tuple[str, ...], str]:

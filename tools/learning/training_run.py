@@ -97,7 +97,7 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     own = [
         (data, kind, learner, train, spaces[kind.partition("_")[0]]) for kind, learner, train in _jobs(data, request)
     ]
-    every = (*own, *_context_jobs(sets, request, folders[0]))
+    every = (*own, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:
             trained = train(source.episodes, space, learner, request.seed)
@@ -107,17 +107,17 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
         yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
 
 
-def _context_jobs(
+def context_jobs(
     sets: Sequence[DataSet], request: TrainingRequest, folder: Path
 ) -> Iterator[tuple[DataSet, str, str, Train, FeatureSpace]]:
     """The model of success beside one object, if the episodes have objects."""
-    from tailor.models.episodes.context_columns import beside_context
+    from tailor.models.episodes.context_columns import beside_context, run_numbers
     from tailor.models.episodes.episodes import merge
 
     beside = [each for each in map(beside_context, sets) if each is not None]
     if beside:
         data = merge(beside)
-        train = partial(_beside_objects, data.manifest.get("objects", 1))
+        train = partial(_beside_objects, run_numbers(beside))
         yield data, "clearance", request.clearance_learner, train, context_space(data.names, folder)
 
 
@@ -150,11 +150,14 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
         yield "success", NEVER_FAILED, success_training.train_success
 
 
-def _beside_objects(objects: int, episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+def _beside_objects(
+    runs: Sequence[int], episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int
+) -> Trained:
     """Train success beside objects; the episodes of one run have its number, and are never split."""
-    from tailor.models.training.success_training import train_success
+    from tailor.models.training import success_training
 
-    return train_success([replace(each, number=each.number // objects) for each in episodes], space, learner, seed)
+    numbered = [replace(each, number=run) for each, run in zip(episodes, runs, strict=True)]
+    return success_training.train_success(numbered, space, learner, seed)
 
 
 def _publish(
