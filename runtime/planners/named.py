@@ -7,6 +7,7 @@ events 0.1 s apart; `up:NAME` is the engine NAME of unified-planning.
 from __future__ import annotations
 
 import math
+import subprocess
 import sys
 from importlib.util import find_spec
 
@@ -50,6 +51,26 @@ def named_planner(command: str) -> list[str] | None:
             raise _missing(command, "unified-planning", UNIFIED)
         return _module("unified_planner", detail)
     return None
+
+
+def check_engine(command: str) -> None:
+    """Check that the engine of "up:ENGINE" exists and plans; other commands pass.
+
+    A process of its own looks, for a second: unified-planning and its engines are not imported here.
+
+    Raises:
+      UsageError: There is no such engine, or it is no planner, or unified-planning cannot be imported.
+    """
+    words = named_planner(command) if command.strip().startswith(f"{UNIFIED}:") else None
+    if words is None:
+        return
+    looked = subprocess.run(words, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if looked.returncode == 0:
+        return
+    reason = looked.stdout.strip()
+    if not reason:
+        reason = f"unified-planning does not start: {''.join(looked.stderr.strip().splitlines()[-1:])}"
+    raise UsageError(f"planner '{command}': {reason}")
 
 
 def kairos_command(limit_s: float, tick_s: float) -> str:

@@ -1,4 +1,7 @@
-"""Prints a plan of one of unified-planning's engines for a PDDL problem: ENGINE DOMAIN PROBLEM."""
+"""Prints a plan of one of unified-planning's engines for a PDDL problem: ENGINE DOMAIN PROBLEM.
+
+ENGINE alone prints why that engine is no planner, and nothing if it is one.
+"""
 
 from __future__ import annotations
 
@@ -33,6 +36,22 @@ def main(engine: str, domain: str, problem: str) -> int:
     for line in _lines(result.plan, task):
         print(line)
     return 0
+
+
+def check(engine: str) -> int:
+    """Print why an engine is no planner, with those that are installed; 0 if it is one, else 2."""
+    from unified_planning.shortcuts import get_environment
+
+    reason = _no_planner(engine)
+    if not reason:
+        return 0
+    factory = get_environment().factory
+    planners = [name for name in factory.engines if factory.engine(name).is_oneshot_planner()]
+    others = (
+        f"one of: {', '.join(planners)}" if planners else "an installed one, such as that of: pip install up-pyperplan"
+    )
+    print(f"{reason}, expected {others}")
+    return 2
 
 
 def _no_planner(engine: str) -> str:
@@ -75,4 +94,4 @@ def _action(instance: Any) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(main(*sys.argv[1:]) if len(sys.argv) > 2 else check(*sys.argv[1:]))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.deliberation.context import PlannerCommand, Settings
-from tailor.runtime.planners.named import KAIROS, kairos_installed
+from tailor.runtime.planners.named import KAIROS, check_engine, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
@@ -40,7 +40,7 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
     """Configuration of an executive; composition checks the scenario's name.
 
     Raises:
-      UsageError: The configured external planner does not exist.
+      UsageError: The configured external planner does not exist, or is none.
     """
     from tailor.executive import domains
 
@@ -52,6 +52,7 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
         settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
     if planner.command:
         split_command(planner.command)
+        check_engine(planner.command)
         settings = replace(settings, external=planner)
     return ExecutiveConfig(domain, scenario, settings, deployment.zoo)
 

@@ -1,14 +1,17 @@
 """Planners from Python packages run by name; one that is not installed is reported with its pip command."""
 
 import math
+import sys
 from importlib.util import find_spec
 
 import pytest
 
+from tailor.executive.deliberation.context import PlannerCommand
 from tailor.executive.planning import parse_domain, parse_problem, validate
 from tailor.runtime.planners import named
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.plan_search import external
 from tailor.tools.main import main
 from tests.support.planning_problems import DATA, own
@@ -87,22 +90,42 @@ def test_other_commands_are_programs():
     assert named.named_planner("kairos --no-anytime") is None
 
 
-@pytest.mark.parametrize(
-    ("engine", "reason"),
-    [
-        ("nonsense", "no engine nonsense is installed"),
-        ("sequential_plan_validator", "the engine sequential_plan_validator is no planner"),
-        ("pyperplan", "the engine pyperplan does not plan with continuous time"),
-    ],
-)
-def test_an_engine_that_cannot_plan_a_task_is_named_with_the_reason(engine, reason, capsys):
-    package = "up_pyperplan" if engine == "pyperplan" else "unified_planning"
-    if find_spec(package) is None:
-        pytest.skip(f"{package} is not installed")
-    assert main(["plan", *DURATIVE, "--planner", f"up:{engine}"]) == 1
+NO_PLANNERS = [
+    ("nope", "no engine nope is installed"),
+    ("sequential_plan_validator", "the engine sequential_plan_validator is no planner"),
+]
+
+
+@pytest.mark.parametrize(("engine", "reason"), NO_PLANNERS)
+@pytest.mark.parametrize("option", ["--planner", "--compare"])
+def test_an_engine_that_is_no_planner_is_refused_in_one_line_before_anything_is_planned(engine, reason, option, capsys):
+    pytest.importorskip("unified_planning")
+    assert main(["plan", *KITCHEN, option, f"up:{engine}"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"tailor plan: planner 'up:{engine}': {reason}, expected ")
+
+
+@pytest.mark.parametrize(("engine", "reason"), NO_PLANNERS)
+def test_an_executive_does_not_start_with_an_engine_that_is_no_planner(engine, reason):
+    pytest.importorskip("unified_planning")
+    with pytest.raises(UsageError, match=reason):
+        executive_config("soccer", Deployment(planner=PlannerCommand(f"up:{engine}")))
+
+
+def test_an_engine_that_cannot_plan_a_task_is_named_with_the_reason(capsys):
+    pytest.importorskip("up_pyperplan")
+    assert main(["plan", *DURATIVE, "--planner", "up:pyperplan"]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("kitchen-durative-s2: no plan found: ")
-    assert f"'{reason}" in line
+    assert "'the engine pyperplan does not plan with continuous time" in line
+
+
+def test_a_package_that_cannot_be_imported_is_one_line_with_its_error(monkeypatch):
+    monkeypatch.setattr(named, "find_spec", lambda name: object())
+    script = "import sys; print('Traceback', file=sys.stderr); sys.exit('ImportError: of grpc')"
+    monkeypatch.setattr(named, "_module", lambda *_: [sys.executable, "-c", script])
+    with pytest.raises(UsageError, match="planner 'up:x': unified-planning does not start: ImportError: of grpc"):
+        named.check_engine("up:x")
 
 
 def test_auto_asks_kairos_for_a_long_durative_problem_and_falls_back_to_the_search(monkeypatch, capsys):

@@ -22,7 +22,7 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
-from tailor.runtime.planners.named import kairos_command
+from tailor.runtime.planners.named import check_engine, kairos_command
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plan_limits import Limits
 from tailor.tools.cli.plan_search import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
@@ -47,6 +47,8 @@ def run(args: argparse.Namespace) -> int:
         if args.json:
             print(json.dumps(as_json(Result("unsupported", None, str(feature), 0, 0), args.files[-1].stem, 0.0)))
         raise
+    for command in (args.planner or "", *args.compare):
+        check_engine(command)
     if args.compare:
         return _compare(args, texts, domain, problem)
     result = _validated(_plan(args, texts, domain, problem), domain, problem)
