@@ -47,10 +47,8 @@ def check(engine: str) -> int:
         return 0
     factory = get_environment().factory
     planners = [name for name in factory.engines if factory.engine(name).is_oneshot_planner()]
-    others = (
-        f"one of: {', '.join(planners)}" if planners else "an installed one, such as that of: pip install up-pyperplan"
-    )
-    print(f"{reason}, expected {others}")
+    installed = f"one of: {', '.join(planners)}" if planners else "a planner, e.g. after: pip install up-pyperplan"
+    print(f"{reason}, expected {installed}")
     return 2
 
 
