@@ -75,10 +75,10 @@ def run(arguments: argparse.Namespace) -> int:
     _check_flags(arguments)
     if arguments.verb in sharing.VERBS:
         return sharing.run(arguments)
-    arguments.zoo = arguments.zoo or _zoo_of(arguments.models)
+    named, arguments.zoo = arguments.zoo, arguments.zoo or _zoo_of(arguments.models)
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
-        return _check(names, arguments)
+        return _check(names, arguments, named)
     loaded = [load_model(name, arguments.zoo) for name in names]
     _check_data(arguments.data, {model.card["action"] for model in loaded})
     if arguments.verb == "list":
@@ -210,7 +210,9 @@ def _brief(value: Any, levels: int = 10) -> str:
     return str(value)
 
 
-def _check(names: list[str], arguments: argparse.Namespace) -> int:
+def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) -> int:
+    """Check models of `arguments.zoo`, which the user `named` or not; exit code 0 if all are sound, else 1."""
+    from tailor.tools.learning.remaking import remaking_advice
     from tailor.tools.learning.staleness import staleness
 
     failed, stale = {}, {}
@@ -227,6 +229,7 @@ def _check(names: list[str], arguments: argparse.Namespace) -> int:
             print(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}")
     if arguments.json:
         print(json.dumps({"checked": names, "failed": failed, "stale": stale}))
-    elif stale:
-        print("stale models are made anew by `tailor make-models`")
+    else:
+        for robot in dict.fromkeys(name.split("/")[0] for name in stale):
+            print(f"stale models of {robot} are made anew by {remaking_advice(robot, named)}")
     return 1 if failed or stale else 0
