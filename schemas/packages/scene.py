@@ -65,7 +65,11 @@ class SceneView(Protocol):
         ...
 
     def of_subgoal(self, values: Mapping[str, float]) -> Pose3 | None:
-        """Pose in "map" of a subgoal with these values by quantity, e.g. {"x": …, "y": …, "phi": …}; None: nowhere."""
+        """Pose in "map" of a subgoal with these values by quantity, e.g. {"x": …, "y": …, "phi": …}.
+
+        None: it has no place, and scenes leave it out. A subgoal with all quantities of an action must have one if
+        any of them is in metres, the unit that marks a place.
+        """
         ...
 
 

@@ -270,6 +270,30 @@ def subgoals_have_places(subject):
     with_scene(subject, of_subgoal=lambda values: None)
 
 
+def subgoal_faults(subject):
+    return list(faults(CLAUSES["subgoals_have_places"], subject, subject.scenarios[0]))
+
+
+def test_a_subgoal_without_a_quantity_in_metres_need_not_be_drawn(subject):
+    """At run time, too, it is left out of scenes: the grip of a gripper has no place."""
+    parameters = subject.domain.actions["drive"].parameters
+    with_action(subject, parameters=tuple(dataclasses.replace(each, unit="rad") for each in parameters))
+    with_scene(subject, of_subgoal=lambda values: None)
+    assert subgoal_faults(subject) == []
+
+
+def test_an_action_without_parameters_has_no_subgoal_to_draw(subject):
+    with_action(subject, parameters=())
+    assert subgoal_faults(subject) == []
+
+
+def test_a_subgoal_with_a_quantity_in_metres_must_be_drawn(subject):
+    with_scene(subject, of_subgoal=lambda values: None)
+    assert subgoal_faults(subject) == [
+        "drive: of_subgoal returns None for x, y, phi, v, expected a pose: x, y are in metres, which mark a place"
+    ]
+
+
 OF_SEVERAL_OUTLETS = ("outlets_are_driven",)  # test_outlet_clauses.py
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import astuple
 
+from tailor.executive.composition import PLACE_UNIT
 from tailor.schemas.messages import Message
 from tailor.schemas.packages.scene import Scene, on_map
 from tailor.tools.contract.clause import clause
@@ -50,13 +51,15 @@ def belief_is_drawn_where_the_truth_is(subject: Subject, case: str) -> Iterator[
 
 @clause("scenario", needs="scene")
 def subgoals_have_places(subject: Subject, case: str) -> Iterator[str]:
-    """A subgoal with values for all quantities of an action's last label is drawn somewhere."""
+    """A subgoal with values for all quantities of an action's last label is drawn somewhere, if one is in metres."""
     view = subject.scene
     for name, action in subject.domain.actions.items():
-        last = max(parameter.argument for parameter in action.parameters)
-        goals = {p.quantity: (p.lower + p.upper) / 2 for p in action.parameters if p.argument == last}
-        if view.of_subgoal(goals) is None:
-            yield f"{name}: of_subgoal returns None for {', '.join(goals)}"
+        last = max((parameter.argument for parameter in action.parameters), default=0)
+        goals = [parameter for parameter in action.parameters if parameter.argument == last]
+        places = [parameter.quantity for parameter in goals if parameter.unit == PLACE_UNIT]
+        if places and view.of_subgoal({p.quantity: (p.lower + p.upper) / 2 for p in goals}) is None:
+            wanted = f"expected a pose: {', '.join(places)} are in metres, which mark a place"
+            yield f"{name}: of_subgoal returns None for {', '.join(p.quantity for p in goals)}, {wanted}"
 
 
 def _scenes(subject: Subject, case: str) -> Iterator[tuple[str, Scene]]:
