@@ -122,20 +122,36 @@ def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certifi
     assert proof.gap_pct <= 5.0 + 1e-9
 
 
-def test_stages_bound_a_single_choice_within_a_hundredth_of_its_cost(models, tasks):
-    for task in tasks[: 2 * TASKS]:  # whose bounds are linear
-        cost = task.objective(models, RefinementSettings())
+def relative_gaps(models, tasks, spread: float) -> np.ndarray:
+    """Share of the cost of single choices by which the bounds are lower, with this multiple of the arrivals' spread."""
+    plain = RefinementSettings()
+    arrivals = tuple((quantity, spread * std) for quantity, std in plain.arrival_spread) if spread else ()
+    chosen, gaps = replace(plain, arrival_spread=arrivals), []
+    for task in tasks:
+        cost = task.objective(models, chosen)
         blocks = blocks_of(cost.stages)
         assert blocks is not None
+        links = links_of(cost.stages, blocks)
+        bounds = [stage_bound(stage, link, chosen) for stage, link in zip(cost.stages, links, strict=True)]
         for choice in cost.ranges.draw(10, np.random.default_rng(0)):
             points = [Boxes(choice[None, block], choice[None, block]) for block in blocks]
-            links = links_of(cost.stages, blocks)
-            bounds = [
-                stage_bound(stage, link, RefinementSettings()) for stage, link in zip(cost.stages, links, strict=True)
-            ]
             pairs = zip(bounds, [NO_PARAMETERS, *points], points, strict=False)
             least = sum(bounds.middle[0] for bounds in joint_bounds(list(pairs)))
-            assert least >= 0.99 * cost(choice[None])[0]
+            gaps.append(1 - least / cost(choice[None])[0])
+    return np.array(gaps)
+
+
+def test_stages_bound_a_single_choice_as_tightly_as_any_model_permits(models, tasks):
+    """With exact arrivals a choice is a point, where only what single precision may round is lost.
+
+    Arrivals that spread are bounded by one linear function, whose error is the model's curvature: of second order in
+    the spread, so that half the spread leaves a quarter of it. How curved the models are is not judged, nor are the few
+    choices at a jump of a model, such as that of an angle at half a turn.
+    """
+    linear = tasks[: 2 * TASKS]
+    exact, half, whole = (relative_gaps(models, linear, spread) for spread in (0.0, 0.5, 1.0))
+    assert np.median(exact) < 0.0005
+    assert np.median(half - exact) < 0.4 * np.median(whole - exact)
 
 
 @pytest.mark.parametrize("seed", range(3))
