@@ -14,6 +14,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
+from tailor.schemas.topics import key_of
 
 ModelLoader = Callable[[str, str], Models]  # of a robot, from a folder; empty: the shipped one
 PLACE_UNIT = "m"
@@ -85,7 +86,10 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
 
 
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
-    """Data from which `rebuild_context` builds the same context; models by the hash of their cards."""
+    """Data from which `rebuild_context` builds the same context; models by the hash of their cards.
+
+    `required` is for observers: the keys without which the executive holds, e.g. "agilo/odom".
+    """
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
     return {
         "config": dataclasses.asdict(config),
@@ -93,6 +97,7 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
         "stamp_offset_ns": context.stamp_offset_ns,
         "driver_sender": context.driver_sender,
         "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
+        "required": [key_of(topic, context.domain.robot) for topic in context.domain.required],
     }
 
 

@@ -37,6 +37,16 @@ def test_the_state_is_one_json_object_and_the_exit_code_is_its_verdict(tmp_path)
     assert (state["healthy"], done.returncode) == (False, 1), "the stand-in executive publishes commands alone"
 
 
+def test_required_sensors_that_never_speak_are_named_while_the_executive_is_disarmed():
+    with bus_system() as (session, endpoint, start):
+        start("tailor.tools.main", "executive", "soccer", "--wait", "--connect", endpoint)
+        wait_until(session.inbox(["provenance"], "").drain, "executive")
+        done = status(endpoint, "--json")
+    problems = [problem for problem in json.loads(done.stdout)["problems"] if problem["problem"] == "topic missing"]
+    assert [problem["detail"].partition(",")[0] for problem in problems] == ["agilo/odom", "agilo/pose"]
+    assert done.returncode == 1
+
+
 def test_foreign_messages_are_counted_and_nothing_else_is_printed():
     with bus_system() as (session, endpoint, _):
         junk = session.player("someone/else", "std_msgs/msg/String")

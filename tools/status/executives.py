@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
+from typing import Any
 
+from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ExecStatus, Provenance, TickReport
+from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import STALE_S
 from tailor.tools.status.picture import ExecutiveView
+from tailor.tools.status.reading import topic_of
 from tailor.tools.status.ticks import TickTimer
 
 MAX_EXECUTIVES = 8  # remembered; a flood of sender ids must not grow this process
+MAX_REQUIRED = 20  # topics of one executive
 FORGET_S = 60.0  # a silent executive that another one has replaced
 
 
@@ -20,6 +24,7 @@ class _Record:
     at_ns: int = 0
     ticks: TickTimer = field(default_factory=TickTimer)
     realtime: dict[str, str] = field(default_factory=dict)
+    required: tuple[str, ...] = ()
 
 
 class Executives:
@@ -46,8 +51,10 @@ class Executives:
         self._record(sender).ticks.add(now_ns, report)
 
     def provenance(self, sender: str, provenance: Provenance) -> None:
-        """Take the privileges that the operating system granted; foreign content leaves them empty."""
-        self._record(sender).realtime = _realtime(provenance.json)
+        """Take granted privileges and required topics; foreign content leaves them empty."""
+        table, record = table_of(provenance.json), self._record(sender)
+        table = {} if isinstance(table, Rejected) else table
+        record.realtime, record.required = _realtime(table), _required(table)
 
     def views(self, now_ns: int) -> tuple[ExecutiveView, ...]:
         """All executives with a status, the most recent one first; long gone ones only if there is no other."""
@@ -72,14 +79,18 @@ def _silent(record: _Record, now_ns: int) -> bool:
     return _age_s(record, now_ns) > STALE_S
 
 
-def _realtime(text: str) -> dict[str, str]:
-    try:
-        granted = json.loads(text)["realtime"]
-    except (ValueError, KeyError, TypeError, RecursionError):
-        return {}
+def _realtime(table: dict[str, Any]) -> dict[str, str]:
+    granted = table.get("realtime")
     if not isinstance(granted, dict):
         return {}
     return {str(name): str(value)[:100] for name, value in list(granted.items())[:10]}
+
+
+def _required(table: dict[str, Any]) -> tuple[str, ...]:
+    keys = table.get("required")
+    if not isinstance(keys, list):
+        return ()
+    return tuple(key for key in keys[:MAX_REQUIRED] if isinstance(key, str) and topic_of(key) is not None)
 
 
 def _view(sender: str, record: _Record, now_ns: int) -> ExecutiveView:
@@ -102,4 +113,5 @@ def _view(sender: str, record: _Record, now_ns: int) -> ExecutiveView:
         action_predicted_s=round(status.action_predicted_s, 3),
         ticks=record.ticks.times(now_ns),
         realtime=record.realtime,
+        required=record.required,
     )

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.status.picture import DriverView, ExecutiveView, Finding, ForeignView, LauncherView, TopicView
+from tailor.tools.status.reading import stale_after_s
 
 
 class Problem(StrEnum):
@@ -26,6 +27,7 @@ class Problem(StrEnum):
     LAUNCHER_SILENT = "launcher silent"
     PROCESS_NOT_RUNNING = "process not running"
     PROCESS_LACKS = "process lacks something"
+    TOPIC_MISSING = "topic missing"
     TOPIC_STALE = "topic stale"
     TOPIC_SLOW = "topic slow"
     SEVERAL_SENDERS = "several senders"
@@ -42,11 +44,12 @@ def findings(
     launcher: LauncherView | None,
     topics: Sequence[TopicView],
     foreign: ForeignView,
+    observed_s: float,
 ) -> tuple[Finding, ...]:
     """All problems; a disarmed robot and an idle or failed task are none."""
     found = [*_of_drivers(drivers), *_of_executives(executives)]
     found += [] if launcher is None else _of_launcher(launcher)
-    found += [*_of_topics(topics), *_of_foreign(foreign)]
+    found += [*_of_missing(executives, topics, observed_s), *_of_topics(topics), *_of_foreign(foreign)]
     return tuple(Finding(problem.value, detail) for problem, detail in found)
 
 
@@ -91,6 +94,16 @@ def _of_launcher(launcher: LauncherView) -> Found:
             yield Problem.PROCESS_NOT_RUNNING, f"{process.name} is {process.state} after {process.starts} starts"
         if process.status:
             yield Problem.PROCESS_LACKS, f"{process.name}: {process.status}"
+
+
+def _of_missing(executives: Sequence[ExecutiveView], topics: Sequence[TopicView], observed_s: float) -> Found:
+    """What an executive requires and nobody has published; one that waits for a goal or a person reports it nowhere."""
+    received = {topic.key for topic in topics}
+    required = {key for executive in executives if not executive.silent for key in executive.required}
+    for key in sorted(required - received):
+        limit_s = stale_after_s(key)
+        if limit_s is not None and observed_s > limit_s:
+            yield Problem.TOPIC_MISSING, f"{key}, required, not received in {observed_s:.1f} s"
 
 
 def _of_topics(topics: Sequence[TopicView]) -> Found:

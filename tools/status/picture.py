@@ -46,6 +46,7 @@ class ExecutiveView:
     action_predicted_s: float
     ticks: TickTimes | None
     realtime: dict[str, str]  # privileges granted by the operating system; empty until published
+    required: tuple[str, ...]  # keys that its domain requires; empty until published
 
 
 @dataclass(frozen=True, slots=True)

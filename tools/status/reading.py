@@ -43,6 +43,12 @@ def topic_of(key: str) -> tuple[str, str] | None:
     return None
 
 
+def stale_after_s(key: str) -> float | None:
+    """Age at which a topic is stale, s; None for one without such a limit, and for a foreign key."""
+    match = topic_of(key)
+    return TOPICS[match[0]].fresh_s if match is not None else None
+
+
 def read(raw: Raw) -> Received | Rejected | None:
     """The message of a publication; Rejected for a damaged one under a key of ours, None for a foreign key."""
     match = topic_of(raw.key)

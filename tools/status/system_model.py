@@ -61,11 +61,12 @@ class SystemModel:
         topics = tuple(_topic_view(key, arrivals, now_ns) for key, arrivals in sorted(self._arrivals.items()))
         foreign = self.foreign.view()
         launcher = None if self._launched is None else _launcher_view(*self._launched, now_ns)
-        problems = findings(executives, drivers, launcher, topics, foreign)
+        observed_s = round((now_ns - self._began_ns) / 1e9, 3)
+        problems = findings(executives, drivers, launcher, topics, foreign, observed_s)
         return Picture(
             healthy=not problems,
             problems=problems,
-            observed_s=round((now_ns - self._began_ns) / 1e9, 3),
+            observed_s=observed_s,
             executives=executives,
             restarts=self._executives.restarts,
             drivers=drivers,
