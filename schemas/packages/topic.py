@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from tailor.schemas.messages import ArmRequest, Message
+from tailor.schemas.messages import ArmRequest, DriverState, Message
 
 Priority = Literal["real_time", "interactive_high", "data"]
 Source = Literal["driver", "executive", "people", "simulator", "scene", "player", "launcher"]
@@ -28,3 +28,8 @@ class Topic:
     def drives(self) -> bool:
         """Whether it moves, arms or stops a robot."""
         return self.priority == "real_time" or self.type is ArmRequest
+
+    @property
+    def playable(self) -> bool:
+        """Whether a recording of it may be published beside robots: it neither drives one nor confirms its stop."""
+        return not self.drives and self.type is not DriverState

@@ -16,7 +16,8 @@ from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import ArmRequest, Clock, DriverState, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
-from tests.support.bus_system import ROOT, bus_system, free_endpoint
+from tailor.tools.operator.stop_button import StopButton
+from tests.support.bus_system import ROOT, bus_system, free_endpoint, secured_system
 from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.stalls import repeat_on_stall
 from tests.unit.tools.test_comparison import Script
@@ -24,13 +25,13 @@ from tests.unit.tools.test_comparison import Script
 DRIVER, EXECUTIVE = "cd" * 16, "ab" * 16
 
 
-def recorded(path, ticks):
-    """A run at 10 Hz: sensors, a driver that obeys EXECUTIVE, and its commands."""
+def recorded(path, ticks, mode="armed"):
+    """A run at 10 Hz: sensors, a driver in a mode that obeys EXECUTIVE, and its commands."""
     script = Script(path)
     script.say(0, "agilo/arm_request", ArmRequest(True, False, "", 0))
     for tick in range(ticks):
         script.say(tick * 100, "agilo/odom", Odometry(0, tick / 10, 0.0, 0.0, 0.0, 0.0), DRIVER)
-        armed = replace(example(DriverState), mode="armed", armed_sender=EXECUTIVE)
+        armed = replace(example(DriverState), mode=mode, armed_sender=EXECUTIVE)
         script.say(tick * 100, "agilo/driver", armed, DRIVER)
         script.say(tick * 100, "agilo/cmd_vel", VelocityCommand(0, 0.5, 0.0))
     return script.close()
@@ -127,15 +128,45 @@ def test_recorded_commands_are_not_published_to_a_live_driver(recording, tmp_pat
         wait_until(session.inbox(["driver"], "agilo").drain, "driver state")
 
         def spared():
-            commands = collect(session, ["cmd_vel", "arm_request"])
+            commands, states = collect(session, ["cmd_vel", "arm_request"]), collect(session, ["driver"])
             errors = run(recording, endpoint, "--rate", "8").stderr
             assert "a driver is live" in errors  # the driver is live unless its simulator stalls for half a second
             assert commands() == []
+            assert DRIVER not in {sample.sender for sample in states()}
 
         repeat_on_stall(3, spared)
         commands = collect(session, ["cmd_vel", "arm_request"])
         run(recording, endpoint, "--drive", "--rate", "8")
         wait_until(commands, "commands of --drive")
+
+
+@pytest.mark.promise("P16")
+def test_on_a_secured_bus_no_recording_confirms_an_estop(tmp_path):
+    stopped = recorded(tmp_path / "stopped.mcap", 20, mode="estopped")
+    with secured_system() as (session, endpoint, _), open_client(endpoint, role="people") as people:
+        odometry = collect(session, ["odom"])
+        player = subprocess.Popen(command(stopped, endpoint, "--loop"), stderr=subprocess.PIPE, text=True, cwd=ROOT)
+        try:
+            wait_until(odometry, "the replay")
+            assert StopButton(people).press() == {}
+            assert player.poll() is None, "the replay goes on"
+        finally:
+            player.kill()
+            errors = player.communicate()[1]
+        assert "the bus is secured" in errors
+
+
+def test_on_a_secured_bus_nothing_is_substituted(recording):
+    with secured_system() as (_, endpoint, _):
+        done = subprocess.run(
+            command(recording, endpoint, "--substitute", "executive"),
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+        )
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "--substitute executive" in done.stderr
+    assert "--security open" in done.stderr
 
 
 def test_a_substitute_executive_receives_the_sensors_and_a_driver_that_obeys_it(recording):

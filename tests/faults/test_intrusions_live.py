@@ -116,7 +116,7 @@ MAY_PUBLISH = {
     "recorder": set(),
     "observer": set(),
     "scene": SCENES,
-    "player": {*SENSORS, *REPORTS, *SCENES, "clock"},
+    "player": {*SENSORS, *REPORTS, *SCENES, "clock"} - {"driver"},  # by its state a driver confirms an e-stop
 }
 
 

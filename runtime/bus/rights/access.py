@@ -31,9 +31,8 @@ _PUBLISHERS: dict[Source, tuple[Role, ...]] = {
 
 
 def may_publish(topic: Topic) -> tuple[Role, ...]:
-    """Roles that may publish a topic; a player of recordings never drives, arms or stops a robot."""
-    roles = _PUBLISHERS[topic.source]
-    return tuple(role for role in roles if role != "player") if topic.drives else roles
+    """Roles that may publish a topic; a player of recordings drives, arms and stops no robot, and confirms no stop."""
+    return tuple(role for role in _PUBLISHERS[topic.source] if topic.playable or role != "player")
 
 
 def access_control(subjects: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

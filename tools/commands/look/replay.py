@@ -32,7 +32,8 @@ from tailor.tools.cli.number_checks import check_within
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
 from tailor.tools.recordings.substitution import OMITTED, SUBSTITUTES, armed_for, live_executive
 
-DRIVING = tuple(name for name, topic in TOPICS.items() if topic.drives)
+OF_ROBOTS = tuple(name for name, topic in TOPICS.items() if not topic.playable)
+SECURED = "the bus is secured: a replay may neither drive there nor pass for a driver (`tailor bus --security open`)"
 LISTEN_S = 0.5  # for a live driver; drivers publish at 10 Hz
 MAX_S = 1e9  # beyond any recording
 MAX_CLOCK_HZ = 10_000.0
@@ -73,12 +74,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--paused", action="store_true", help="begin paused")
     add("--wait", type=float, default=2.0, metavar="S", help="wait this long for subscribers (default 2)")
     add(
-        "--drive", action="store_true", help="publish commands and requests even if a driver is live; needs an open bus"
+        "--drive",
+        action="store_true",
+        help="publish commands, requests and driver states even if a driver is live; needs an open bus",
     )
     add(
         "--substitute",
         choices=SUBSTITUTES,
-        help="replace the recorded messages of this process by a live one",
+        help="replace the recorded messages of this process by a live one; needs an open bus",
     )
     add("--json", action="store_true", help="print the result as JSON")
     configure_bus(parser)
@@ -92,6 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
         check_within(getattr(arguments, name), maximum, f"--{name}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
+    if arguments.substitute and _is_secured(arguments):
+        raise UsageError(f"--substitute {arguments.substitute}: {SECURED}")
     stop = stop_on_signals()
     with open_bus(arguments, "player") as session:
         codec.prime()
@@ -100,9 +105,9 @@ def run(arguments: argparse.Namespace) -> int:
             wanted = Selection(wanted.include, wanted.exclude + OMITTED)
             changes = {"rewrite": partial(armed_for, live_executive(session))}
         elif reason := _why_not_drive(arguments, session):
-            _warn(f"{reason}: commands, arming requests and e-stops are omitted")
-            wanted = Selection(wanted.include, wanted.exclude + DRIVING)
-            changes = {"excluded_keys": Selection(exclude=DRIVING)}
+            _warn(f"{reason}: commands, arming requests, e-stops and states of drivers are omitted")
+            wanted = Selection(wanted.include, wanted.exclude + OF_ROBOTS)
+            changes = {"excluded_keys": Selection(exclude=OF_ROBOTS)}
         part = RecordingPart(recording, wanted, remap, arguments.start, arguments.duration, **changes)
         publishers = Publishers(session, part.channels())
         damage = recording.damage.text()  # all of it has been read; the playback may end early
@@ -155,12 +160,18 @@ def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
 
 
 def _why_not_drive(arguments: argparse.Namespace, session: Session) -> str:
-    """Reason for omitting what drives a robot; empty: it is published."""
-    if run_folder(bus_settings(arguments).endpoint).secured:
-        return "the bus is secured, and a replay may not drive there (`tailor bus --security open`)"
+    """Reason for omitting what drives a robot or passes for its driver; empty: it is published."""
+    if _is_secured(arguments):
+        return SECURED
     if not arguments.drive and _driver_is_live(session):
         return "a driver is live (--drive publishes all)"
     return ""
+
+
+def _is_secured(arguments: argparse.Namespace) -> bool:
+    """Whether the bus runs with passwords here, or is another machine's that demands a key."""
+    settings = bus_settings(arguments)
+    return bool(settings.key) or run_folder(settings.endpoint).secured
 
 
 def _driver_is_live(session: Session) -> bool:

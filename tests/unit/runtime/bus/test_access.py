@@ -46,9 +46,13 @@ def test_only_people_arm_and_stop():
         assert [role for role in ROLES if key in allowed(role, "put")] == ["people"]
 
 
-def test_only_a_driver_publishes_sensors_and_its_state_besides_a_player():
-    for key in ("*/odom", "*/pose", "*/ball", "*/joint_states", "*/driver", "*/sim/truth"):
+def test_only_a_driver_publishes_sensors_besides_a_player():
+    for key in ("*/odom", "*/pose", "*/ball", "*/joint_states", "*/sim/truth"):
         assert {role for role in ROLES if key in allowed(role, "put")} == {"driver", "player"}
+
+
+def test_only_a_driver_publishes_its_state_by_which_it_confirms_an_estop():
+    assert [role for role in ROLES if "*/driver" in allowed(role, "put")] == ["driver"]
 
 
 @pytest.mark.parametrize("role", ["observer", "recorder"])
