@@ -14,7 +14,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
-from tailor.schemas.topics import key_of
+from tailor.schemas.topics import TOPICS, is_rate, key_of
 
 ModelLoader = Callable[[str, str], Models]  # of a robot, from a folder; empty: the shipped one
 PLACE_UNIT = "m"
@@ -88,7 +88,7 @@ def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
     """Data from which `rebuild_context` builds the same context; models by the hash of their cards.
 
-    `required` is for observers: the keys without which the executive holds, e.g. "agilo/odom".
+    `required`: keys without which the executive holds, e.g. "agilo/odom", with their nominal rates in Hz.
     """
     models: dict[str, Any] = {**context.models.durations, **context.models.successes}
     return {
@@ -97,8 +97,13 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
         "stamp_offset_ns": context.stamp_offset_ns,
         "driver_sender": context.driver_sender,
         "models": {name: model.card["sha256"] for name, model in sorted(models.items())},
-        "required": [key_of(topic, context.domain.robot) for topic in context.domain.required],
+        "required": _required(context),
     }
+
+
+def _required(context: Context) -> dict[str, float]:
+    domain, rates_hz = context.domain, context.sensor_rates_hz
+    return {key_of(name, domain.robot): rates_hz.get(name, TOPICS[name].rate_hz) for name in domain.required}
 
 
 def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None) -> Context:
@@ -114,7 +119,10 @@ def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None
     _check(recorded)
     config = from_table(ExecutiveConfig, recorded["config"], "recording's provenance")
     context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"], load)
-    context = dataclasses.replace(context, driver_sender=str(recorded.get("driver_sender", "")))  # newer than others
+    driver_sender, required = str(recorded.get("driver_sender", "")), recorded.get("required", {})  # newer than others
+    names = {name: key_of(name, context.domain.robot) for name in context.domain.required}
+    rates_hz = {name: float(required[key]) for name, key in names.items() if key in required}
+    context = dataclasses.replace(context, driver_sender=driver_sender, sensor_rates_hz=rates_hz)
     here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():
         if here.get(name) != sha256:
@@ -127,8 +135,10 @@ def _check(recorded: Mapping[str, Any]) -> None:
     """Raise UsageError if a provenance, read from a file, lacks an entry that `rebuild_context` needs."""
     if not recorded:
         raise UsageError("the recording holds no exec/provenance, from which the executive is rebuilt")
-    kinds = {"config": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict}
+    kinds = {"config": dict, "sender": str, "stamp_offset_ns": int, "models": dict, "machine": dict, "required": dict}
     for name, kind in kinds.items():
-        value = recorded.get(name, {} if name == "machine" else None)  # older recordings lack the machine
+        value = recorded.get(name, {} if name in ("machine", "required") else None)  # which older recordings lack
         if not isinstance(value, kind):
             raise UsageError(f"recording's provenance: '{name}' is {value!s:.40}, expected {kind.__name__}")
+    if not all(is_rate(rate_hz) for rate_hz in recorded.get("required", {}).values()):
+        raise UsageError("recording's provenance: 'required' has a value that is no rate in Hz")

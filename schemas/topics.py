@@ -13,9 +13,10 @@ from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.package_topics import PackageTopics, add_topics
 from tailor.schemas.packages.topic import Priority, Source, Topic
 
-__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "key_of", "reports"]
+__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "is_rate", "key_of", "reports"]
 
 STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
+MAX_RATE_HZ = 1e6  # beyond any sensor
 
 _SHIPPED: dict[str, Topic] = {
     "cmd_vel": Topic("{robot}/cmd_vel", m.VelocityCommand, 10, "executive", priority="real_time"),
@@ -79,6 +80,11 @@ class TopicTable(Mapping[str, Topic]):
 
 
 TOPICS = TopicTable()
+
+
+def is_rate(value: object) -> bool:
+    """Whether a value from outside is a rate in Hz."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= MAX_RATE_HZ
 
 
 def reports() -> tuple[str, ...]:

@@ -73,18 +73,21 @@ def of_known_senders(
     return tuple(kept)
 
 
-def slow_topics(topics: tuple[str, ...], robot: str, streams: Mapping[str, Stream], now_ns: int) -> tuple[str, ...]:
+def slow_topics(
+    topics: tuple[str, ...], robot: str, streams: Mapping[str, Stream], now_ns: int, rates_hz: Mapping[str, float]
+) -> tuple[str, ...]:
     """Those of `topics` that come at less than 60 % of their nominal rate, as text, e.g. "odom at 25 of 50 Hz".
 
-    A tick receives only the newest sample of a topic; the sender's sequence numbers show how many there were.
-    A topic without numbers, or with less than a second of history, is not judged.
+    The nominal rate is that in `rates_hz`, by topic, or else that of the table of topics. A tick receives only the
+    newest sample of a topic; the sender's sequence numbers show how many there were. A topic without numbers, or with
+    less than a second of history, is not judged.
     """
     rates = ((topic, _rate_hz(streams.get(key_of(topic, robot)), now_ns)) for topic in topics)
-    limits = {topic: MIN_RATE * TOPICS[topic].rate_hz for topic in topics}
+    nominal = {topic: rates_hz.get(topic, TOPICS[topic].rate_hz) for topic in topics}
     return tuple(
-        f"{topic} at {rate:.0f} of {TOPICS[topic].rate_hz:g} Hz"
+        f"{topic} at {rate:.0f} of {nominal[topic]:g} Hz"
         for topic, rate in rates
-        if rate is not None and rate < limits[topic]
+        if rate is not None and rate < MIN_RATE * nominal[topic]
     )
 
 

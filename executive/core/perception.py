@@ -66,7 +66,8 @@ def disarmed(context: Context, state: State) -> Cause | None:
 
 def slow_inputs(context: Context, state: State) -> Cause | None:
     """Cause for which no new action starts; None if all required sensors come at their rates."""
-    slow = slow_topics(context.domain.required, context.domain.robot, state.streams, state.now_ns)
+    domain, rates_hz = context.domain, context.sensor_rates_hz
+    slow = slow_topics(domain.required, domain.robot, state.streams, state.now_ns, rates_hz)
     return Cause(Reason.INPUT_SLOW, ", ".join(slow)) if slow else None
 
 

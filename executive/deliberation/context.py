@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -74,6 +75,7 @@ class Context:
     sender: str  # this executive's sender id, 32 hex digits
     stamp_offset_ns: int = 0  # added to the monotonic time for the stamps of messages
     driver_sender: str = ""  # sender id that the driver has when this executive starts; "": the first one heard
+    sensor_rates_hz: Mapping[str, float] = field(default_factory=dict)  # nominal, by topic; else those of the topics
 
     def stamp(self, now_ns: int) -> int:
         """Stamp of a message, from the monotonic time `now_ns`."""

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
+from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate
 from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
+
+MIN_FRESH = 2  # messages of a sensor before it is stale, so that it may lose one
 
 
 def driver_of(robot: str, file: str | None) -> DriverSpec:
@@ -24,14 +29,20 @@ def driver_of(robot: str, file: str | None) -> DriverSpec:
 
 
 def check_driver(domain: Domain, driver: DriverSpec) -> None:
-    """Raise UsageError with all mismatches in one line, unless the driver accepts every command of the domain."""
+    """Raise UsageError with all mismatches in one line, unless the driver takes and sends what the domain needs."""
     mismatches = mismatches_of(domain, driver)
     if mismatches:
         raise UsageError(f"domain {domain.name} and the driver of {domain.robot} do not match: {'; '.join(mismatches)}")
 
 
+def sensor_rates_hz(domain: Domain, driver: DriverSpec) -> dict[str, float]:
+    """Nominal rates of the sensors that a domain requires, by topic: as declared, else those of the topics."""
+    declared = {sensor.topic: sensor.rate_hz for sensor in driver.sensors if sensor.rate_hz}
+    return {topic: declared.get(topic, TOPICS[topic].rate_hz) for topic in domain.required if topic in TOPICS}
+
+
 def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
-    """All reasons why the driver would not accept every command of the domain."""
+    """All reasons why the driver would not accept every command of the domain, or its sensors not be fresh."""
     mismatches = []
     published = tuple(outlet.topic for outlet in outlets_of(domain))
     if published != driver.command_topics:
@@ -52,7 +63,17 @@ def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
             for axis, limit in zip(domain.axes, driver.limits, strict=True)
             if axis.kept != limit.kept
         ]
-    return mismatches
+    return [*mismatches, *_unfit_rates(domain, driver)]
+
+
+def _unfit_rates(domain: Domain, driver: DriverSpec) -> Iterator[str]:
+    for name, rate_hz in sensor_rates_hz(domain, driver).items():
+        topic = TOPICS[name]
+        if not is_rate(rate_hz):
+            yield f"{name} comes at {rate_hz:g} Hz, expected at most {MAX_RATE_HZ:g} and not less than 0"
+        elif topic.fresh_s is not None and rate_hz < min(topic.rate_hz, MIN_FRESH / topic.fresh_s):
+            least = f"expected at least {MIN_FRESH / topic.fresh_s:g} Hz"
+            yield f"{name} comes at {rate_hz:g} Hz, {least}: it is stale after {topic.fresh_s:g} s"
 
 
 def _rest(kept: float | None) -> str:

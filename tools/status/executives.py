@@ -8,9 +8,9 @@ from typing import Any
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ExecStatus, Provenance, TickReport
 from tailor.schemas.parsed_files import table_of
-from tailor.schemas.topics import STALE_S
+from tailor.schemas.topics import STALE_S, is_rate
 from tailor.tools.status.picture import ExecutiveView
-from tailor.tools.status.reading import topic_of
+from tailor.tools.status.reading import topic_at
 from tailor.tools.status.ticks import TickTimer
 
 MAX_EXECUTIVES = 8  # remembered; a flood of sender ids must not grow this process
@@ -24,7 +24,7 @@ class _Record:
     at_ns: int = 0
     ticks: TickTimer = field(default_factory=TickTimer)
     realtime: dict[str, str] = field(default_factory=dict)
-    required: tuple[str, ...] = ()
+    required: dict[str, float] = field(default_factory=dict)
 
 
 class Executives:
@@ -86,11 +86,12 @@ def _realtime(table: dict[str, Any]) -> dict[str, str]:
     return {str(name): str(value)[:100] for name, value in list(granted.items())[:10]}
 
 
-def _required(table: dict[str, Any]) -> tuple[str, ...]:
-    keys = table.get("required")
-    if not isinstance(keys, list):
-        return ()
-    return tuple(key for key in keys[:MAX_REQUIRED] if isinstance(key, str) and topic_of(key) is not None)
+def _required(table: dict[str, Any]) -> dict[str, float]:
+    stated = table.get("required")
+    if not isinstance(stated, dict):
+        return {}
+    topics = ((key, value, topic_at(key)) for key, value in list(stated.items())[:MAX_REQUIRED])
+    return {key: float(value) if is_rate(value) else topic.rate_hz for key, value, topic in topics if topic is not None}
 
 
 def _view(sender: str, record: _Record, now_ns: int) -> ExecutiveView:

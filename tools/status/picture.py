@@ -46,7 +46,7 @@ class ExecutiveView:
     action_predicted_s: float
     ticks: TickTimes | None
     realtime: dict[str, str]  # privileges granted by the operating system; empty until published
-    required: tuple[str, ...]  # keys that its domain requires; empty until published
+    required: dict[str, float]  # nominal rates (Hz) of what its domain requires, by key; empty until published
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
-from tailor.schemas.topics import TOPICS
+from tailor.schemas.topics import TOPICS, Topic
 
 _ROBOT = "{robot}/"
 _FIXED = {topic.key: name for name, topic in TOPICS.items() if not topic.key.startswith(_ROBOT)}
@@ -43,10 +43,10 @@ def topic_of(key: str) -> tuple[str, str] | None:
     return None
 
 
-def stale_after_s(key: str) -> float | None:
-    """Age at which a topic is stale, s; None for one without such a limit, and for a foreign key."""
+def topic_at(key: str) -> Topic | None:
+    """Topic of a key, e.g. that of odometry at agilo/odom; None for a foreign key."""
     match = topic_of(key)
-    return TOPICS[match[0]].fresh_s if match is not None else None
+    return None if match is None else TOPICS[match[0]]
 
 
 def read(raw: Raw) -> Received | Rejected | None:

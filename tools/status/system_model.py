@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import DriverState, ExecStatus, ProcessStates, Provenance, TickReport
-from tailor.schemas.topics import TOPICS, Topic
+from tailor.schemas.topics import Topic
 from tailor.tools.status.arrivals import Arrivals
 from tailor.tools.status.drivers import DriverRecord
 from tailor.tools.status.executives import Executives
 from tailor.tools.status.foreign import ForeignCounts
 from tailor.tools.status.health import findings
 from tailor.tools.status.picture import LauncherView, Picture, TopicView
-from tailor.tools.status.reading import Received, read, topic_of
+from tailor.tools.status.reading import Received, read, topic_at
 
 SLOW_SHARE = 0.75  # of the topic's rate; at half of it no new action starts
 LAUNCHER_SILENCE_S = 3.0  # it publishes once a second
@@ -58,7 +60,8 @@ class SystemModel:
         executives = self._executives.views(now_ns)
         senders = {executive.sender for executive in executives if not executive.silent}
         drivers = tuple(record.view(robot, now_ns, senders) for robot, record in sorted(self._drivers.items()))
-        topics = tuple(_topic_view(key, arrivals, now_ns) for key, arrivals in sorted(self._arrivals.items()))
+        rates_hz = {key: rate_hz for each in executives if not each.silent for key, rate_hz in each.required.items()}
+        topics = tuple(_topic_view(key, each, rates_hz, now_ns) for key, each in sorted(self._arrivals.items()))
         foreign = self.foreign.view()
         launcher = None if self._launched is None else _launcher_view(*self._launched, now_ns)
         observed_s = round((now_ns - self._began_ns) / 1e9, 3)
@@ -103,8 +106,9 @@ def _launcher_view(states: ProcessStates, at_ns: int, now_ns: int) -> LauncherVi
     return LauncherView(round(age_s, 3), age_s > LAUNCHER_SILENCE_S, states.processes)
 
 
-def _topic_view(key: str, arrivals: Arrivals, now_ns: int) -> TopicView:
+def _topic_view(key: str, arrivals: Arrivals, rates_hz: Mapping[str, float], now_ns: int) -> TopicView:
     topic = _topic(key)
+    nominal_hz = rates_hz.get(key, topic.rate_hz)
     needed = topic.fresh_s is not None  # commands rest while nobody is armed, and a ball may be out of sight
     age_s, rate_hz = arrivals.age_s(now_ns), arrivals.rate_hz(now_ns)
     return TopicView(
@@ -112,15 +116,15 @@ def _topic_view(key: str, arrivals: Arrivals, now_ns: int) -> TopicView:
         received=arrivals.count,
         age_s=round(age_s, 3),
         rate_hz=None if rate_hz is None else round(rate_hz, 2),
-        nominal_hz=topic.rate_hz,
+        nominal_hz=nominal_hz,
         stale_after_s=topic.fresh_s,
         stale=topic.fresh_s is not None and age_s > topic.fresh_s,
-        slow=needed and rate_hz is not None and rate_hz < SLOW_SHARE * topic.rate_hz,
+        slow=needed and rate_hz is not None and rate_hz < SLOW_SHARE * nominal_hz,
         senders=arrivals.senders(now_ns),
     )
 
 
 def _topic(key: str) -> Topic:
-    match = topic_of(key)
-    assert match is not None, "only such keys are recorded"
-    return TOPICS[match[0]]
+    topic = topic_at(key)
+    assert topic is not None, "only such keys are recorded"
+    return topic

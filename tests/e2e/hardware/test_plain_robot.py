@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from contextlib import contextmanager
+from importlib import resources
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,6 +35,11 @@ class System(NamedTuple):
     base: object
     bus: object
     robots_bus: object
+
+
+def shipped_file(robot):
+    """Text of the driver.toml that ships for a robot."""
+    return resources.files("tailor.simnodes").joinpath(robot, "driver.toml").read_text()
 
 
 @contextmanager
@@ -102,6 +108,19 @@ def test_a_plain_robot_drives_through_its_waypoints(tmp_path, command, robot):
     with driven(tmp_path, command=command, **robot) as (session, endpoint, start, trace, *_):
         ready(session, "agilo")
         executive = executive_on(start, endpoint, "soccer", "waypoints")
+        arm(session, "agilo")
+        assert achieved(executive)
+        wait_until(at_rest(trace), "rest")
+
+
+@pytest.mark.slow
+def test_a_robot_with_odometry_at_10_hz_drives_where_its_driver_file_declares_that(tmp_path):
+    text = shipped_file("agilo")
+    declared = tmp_path / "driver.toml"
+    declared.write_text(text.replace("rate_hz = 50", "rate_hz = 10").replace("rate_hz = 12.5", "rate_hz = 10"))
+    with driven(tmp_path, odom_every=5) as (session, endpoint, start, trace, *_):
+        ready(session, "agilo")
+        executive = executive_on(start, endpoint, "soccer", "waypoints", "--driver", declared)
         arm(session, "agilo")
         assert achieved(executive)
         wait_until(at_rest(trace), "rest")

@@ -1,8 +1,9 @@
 """A ROS-like base in its own process that knows nothing of Tailor: own dynamics, own CDR, no attachments.
 
-It takes a Twist or a TwistStamped, publishes odometry at 50 Hz, and a pose of its localiser while it moves. As most
-bases, it stops by itself 0.5 s after the last command. Argument: JSON of `DEFAULTS`; each change of speed goes to
-`trace`. SIGUSR1 freezes its odometry: the last message is published again and again.
+It takes a Twist or a TwistStamped, publishes odometry at 50 Hz or at every `odom_every`-th step of that, and a pose of
+its localiser while it moves. As most bases, it stops by itself 0.5 s after the last command. Argument: JSON of
+`DEFAULTS`; each change of speed goes to `trace`. SIGUSR1 freezes its odometry: the last message is published again and
+again.
 """
 
 import json
@@ -17,7 +18,7 @@ import zenoh
 
 DEFAULTS = {
     "endpoint": "", "trace": "", "command": "twist", "cmd_vel": "cmd_vel", "odom": "odom", "pose": "amcl_pose",
-    "start": [0.0, 0.0, 0.0], "odom_frame": "odom",
+    "start": [0.0, 0.0, 0.0], "odom_frame": "odom", "odom_every": 1,
 }  # fmt: skip
 PERIOD_S, TIMEOUT_S, DEAD_S = 0.02, 0.5, 0.04
 FASTER, SLOWER, TURN = 0.5, 0.65, 1.75  # m/s², m/s², rad/s²
@@ -118,7 +119,8 @@ def main(options):
                 written = (v, omega)
                 trace.write(f"{time.monotonic_ns()} {v!r} {omega!r} {wanted[0]!r}\n")
             message = message if frozen else odometry(odom, v, omega, robot["odom_frame"])
-            session.put(robot["odom"], message)
+            if step % robot["odom_every"] == 0:
+                session.put(robot["odom"], message)
             if not robot["pose"] or step % 10:
                 continue
             if (

@@ -10,9 +10,9 @@ import pytest
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
-from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
-from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
 
 
 @pytest.mark.parametrize("name", domain_names())
@@ -28,6 +28,34 @@ def test_all_mismatches_are_reported_at_once():
         check_driver(domains.load("soccer"), slow)
     assert "publishes cmd_vel, the driver expects joint_cmd" in str(caught.value)
     assert "v ranges from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
+
+
+def sensing(**rates_hz):
+    sensors = tuple(SensorSpec(topic, rate_hz) for topic, rate_hz in rates_hz.items())
+    return dataclasses.replace(shipped_driver_spec("agilo"), sensors=sensors)
+
+
+def test_rates_of_required_sensors_are_those_that_the_driver_declares():
+    soccer = domains.load("soccer")
+    assert sensor_rates_hz(soccer, sensing(odom=10.0, ball=5.0)) == {"odom": 10.0, "pose": 12.5}
+    assert sensor_rates_hz(soccer, sensing(odom=0.0)) == {"odom": 50.0, "pose": 12.5}, "0: that of the topic"
+
+
+def test_a_driver_whose_sensors_may_just_be_fresh_is_accepted():
+    check_driver(domains.load("soccer"), sensing(odom=4.0, pose=2.0))
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "expected"),
+    [
+        (3.9, "odom comes at 3.9 Hz, expected at least 4 Hz: it is stale after 0.5 s"),
+        (-1.0, "odom comes at -1 Hz, expected at most 1e\\+06 and not less than 0"),
+        (1e7, "odom comes at 1e\\+07 Hz, expected at most"),
+    ],
+)
+def test_a_driver_with_a_sensor_too_slow_to_be_fresh_is_refused(rate_hz, expected):
+    with pytest.raises(UsageError, match=expected):
+        check_driver(domains.load("soccer"), sensing(odom=rate_hz))
 
 
 COMMAND = '[command]\ntopic = "cmd_vel"\ntimeout_s = 0.3\naxes = [{ name = "v", lower = -1, upper = 1 }]\n'

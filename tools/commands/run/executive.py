@@ -23,7 +23,7 @@ from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
-from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
 
@@ -49,7 +49,9 @@ def run(arguments: argparse.Namespace) -> int:
     config = executive_config(arguments.domain, deployment)
     check_package(arguments.domain)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
-    check_driver(context.domain, driver_of(context.domain.robot, arguments.driver))
+    driver = driver_of(context.domain.robot, arguments.driver)
+    check_driver(context.domain, driver)
+    context = replace(context, sensor_rates_hz=sensor_rates_hz(context.domain, driver))
     goal = _goal(context, arguments)
     driver_sender = checked_sender(arguments.driver_sender, "--driver-sender")
     with open_bus(arguments, "executive", sender=sender_of(arguments)) as session:

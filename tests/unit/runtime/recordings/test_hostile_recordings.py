@@ -153,7 +153,7 @@ def test_a_run_without_valid_provenance_is_refused_in_one_line(monkeypatch, text
 
 
 @pytest.mark.promise("P40")
-@pytest.mark.parametrize("name", ["config", "sender", "stamp_offset_ns", "models", "machine"])
+@pytest.mark.parametrize("name", ["config", "sender", "stamp_offset_ns", "models", "machine", "required"])
 @pytest.mark.parametrize("value", [None, "x", 1.5, []])
 def test_every_part_of_a_provenance_is_checked(name, value):
     provenance = RecordedRuns(GOLDEN).runs[0].provenance
@@ -161,6 +161,13 @@ def test_every_part_of_a_provenance_is_checked(name, value):
         return
     with pytest.raises(UsageError, match=name):
         rebuild_context({**provenance, name: value})
+
+
+@pytest.mark.parametrize("rate", [None, "x", True, -1, float("nan"), 10**400])
+def test_a_rate_of_a_provenance_that_is_no_rate_is_refused(rate):
+    provenance = RecordedRuns(GOLDEN).runs[0].provenance
+    with pytest.raises(UsageError, match="required"):
+        rebuild_context({**provenance, "required": {"agilo/odom": rate}})
 
 
 def test_the_error_for_a_file_without_a_run_includes_its_damage(tmp_path, capsys):

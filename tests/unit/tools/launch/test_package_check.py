@@ -62,7 +62,7 @@ def test_each_fault_of_a_domain_is_named(fault):
     ("old", "new", "fault"),
     [
         ('robot = "agilo"', 'robot = "hal"', "driver.toml: robot is 'hal', expected 'agilo'"),
-        ("rate_hz = 50", "rate_hz = 20", "driver.toml: sensors.odom: rate_hz is 20, expected 50"),
+        ("rate_hz = 50", "rate_hz = 3", "driver.toml: odom comes at 3 Hz, expected at least 4 Hz"),
         ("ball =", "lidar =", "driver.toml: sensors: there is no topic 'lidar'"),
         ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
         ("timeout_s = 0.3", "", "timeout_s is missing, expected a finite number"),

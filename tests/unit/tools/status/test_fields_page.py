@@ -8,7 +8,7 @@ from tailor.schemas.messages import ProcessState, ProcessStates
 from tests.support.bus_system import ROOT
 from tests.unit.tools.status.bus_feed import OTHER, Feed, driver
 
-BY_NAME = {"realtime", "unknown", "refused"}  # their keys are data
+BY_NAME = {"realtime", "required", "unknown", "refused"}  # their keys are data
 
 
 def names(value):
