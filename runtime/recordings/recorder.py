@@ -40,6 +40,7 @@ class Health:
     """State of a recording, for display."""
 
     messages: int = 0
+    unwritten: int = 0  # of files that could not be closed for want of space: not among `messages`
     bytes: int = 0
     files: list[Path] = field(default_factory=list)
     drops: Counter[str] = field(default_factory=Counter)
@@ -76,7 +77,7 @@ class Recorder:
         self._limits, self._metadata = limits, metadata
         self._wanted: dict[tuple[str, str], bool] = {}  # by key and encoding
         self._dropped: Counter[str] = Counter()  # because the disk was full, or the file had too many keys
-        self._closed_messages = self._closed_bytes = 0
+        self._closed_messages = self._closed_bytes = self._closed_unwritten = 0
         self._closed_mixed: Counter[str] = Counter()
         self._flush_at_ns = self._note_at_ns = 0
         self._split_error = ""  # why the next file cannot be created
@@ -155,6 +156,7 @@ class Recorder:
         self._writer.close()
         self._closed_mixed += self._writer.mixed
         self._closed_messages += self._writer.messages
+        self._closed_unwritten += self._writer.unwritten
         self._closed_bytes += self._writer.bytes
         self._writer, self._begun_ns = following, None
 
@@ -169,5 +171,6 @@ class Recorder:
     def _report(self) -> None:
         health = self.health
         health.messages = self._closed_messages + self._writer.messages
+        health.unwritten = self._closed_unwritten + self._writer.unwritten
         health.bytes = self._closed_bytes + self._writer.bytes
         health.disk_error = self._writer.disk_error or self._split_error

@@ -76,6 +76,7 @@ def test_a_full_disk_ends_the_file_not_the_recorder_and_is_reported(tmp_path):
     sequences = [message.sequence for message in recording.messages()]
     assert sequences == list(range(sequences[0], sequences[-1] + 1)), "what is there is whole"
     assert len(sequences) > 100
+    assert f"full.mcap: {len(sequences)} messages, " in (tmp_path / "log").read_text().splitlines()[-1]
     assert recording.damage.damaged_chunks == 0
 
 

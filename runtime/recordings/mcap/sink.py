@@ -69,6 +69,7 @@ class Sink:
 
     def close(self) -> None:
         """Close the file; buffered bytes are lost."""
+        self._pending = bytearray()
         os.close(self._file)
 
 
@@ -136,6 +137,7 @@ class BackgroundSink(Sink):
 
     def close(self) -> None:
         """Close the file, unless a write hangs; buffered bytes are lost."""
+        self._end = self.on_disk
         if not self._is_writing:
             super().close()
 

@@ -6,7 +6,7 @@ Foxglove, PlotJuggler, rerun and rosbags read it. log_time is the wall time of r
 from __future__ import annotations
 
 import json
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -50,9 +50,12 @@ class McapWriter:
           OSError: The file cannot be created.
         """
         self.path = path
-        self.messages = 0
+        self.messages = 0  # once closed: those that are on the disk
+        self.unwritten = 0  # lost as the file was closed
         self.disk_error = ""  # of the last flush; empty after a successful one
         self._sink = BackgroundSink(path) if background else Sink(path)
+        self._ends: deque[tuple[int, int]] = deque()  # (position, messages before it) that may not be on the disk yet
+        self._written = 0  # messages before the last position that was on the disk
         target: Any = self._sink
         layout: dict[str, Any] = COMPACT if compact else {"chunk_size": CHUNK_BYTES}
         self._writer: Any = Writer(target, compression=CompressionType.ZSTD, **layout)
@@ -70,7 +73,7 @@ class McapWriter:
 
     @property
     def bytes(self) -> int:
-        """Size of the file in bytes, including data that waits for the disk."""
+        """Size of the file in bytes, including data that waits for the disk; once closed without."""
         return self._sink.tell()
 
     @property
@@ -110,12 +113,15 @@ class McapWriter:
         except OSError as error:
             self.disk_error = error.strerror or str(error)
             return False
+        finally:
+            self._mark_end()
         self.disk_error = SLOW if self._sink.is_slow else ""
         return not self.disk_error
 
     def close(self) -> bool:
         """Write index and footer; False if writing fails, the file is then readable without them."""
         self._writer.finish()
+        self._mark_end()
         try:
             self._sink.finish()
             self.disk_error = ""
@@ -123,7 +129,20 @@ class McapWriter:
             self.disk_error = error.strerror or str(error)
         self._index.close()
         self._sink.close()
+        self.unwritten = self.messages - self._count_written()
+        self.messages -= self.unwritten
         return not self.disk_error
+
+    def _mark_end(self) -> None:
+        """All messages so far end here: they are in complete chunks."""
+        self._count_written()
+        if self.messages > (self._ends[-1][1] if self._ends else self._written):
+            self._ends.append((self._sink.tell(), self.messages))
+
+    def _count_written(self) -> int:
+        while self._ends and self._ends[0][0] <= self._sink.on_disk:
+            self._written = self._ends.popleft()[1]
+        return self._written
 
 
 def _topics_table() -> dict[str, str]:

@@ -95,9 +95,9 @@ def run(arguments: argparse.Namespace) -> int:
         health = recorder.close()
     if arguments.json:
         print(json.dumps(_json_value(health)), flush=True)
-    elif not arguments.quiet or health.drops or health.mixed or health.disk_error:
+    elif not arguments.quiet or health.drops or health.unwritten or health.mixed or health.disk_error:
         print(_line(health), file=sys.stderr)
-    return 1 if health.drops or health.disk_error else 0
+    return 1 if health.drops or health.unwritten or health.disk_error else 0
 
 
 def _recorder(arguments: argparse.Namespace, queue: IngestQueue) -> Recorder | SnapshotRecorder:
@@ -149,8 +149,8 @@ def _losses(health: Health, connected: bool) -> str:
         return f"disk: {health.disk_error}"
     if not connected:
         return DISCONNECTED
-    if health.drops:
-        return f"{health.drops.total()} messages dropped"
+    if health.drops or health.unwritten:
+        return f"{health.drops.total() + health.unwritten} messages dropped"
     return "too many senders: some messages are recorded without theirs" if health.mixed else ""
 
 
@@ -173,6 +173,7 @@ def _json_value(health: Health) -> dict[str, Any]:
     return {
         "files": [str(path) for path in health.files],
         "messages": health.messages,
+        "unwritten": health.unwritten,
         "bytes": health.bytes,
         "dropped": health.drops.total(),
         "without_sender": health.mixed.total(),
@@ -183,6 +184,8 @@ def _json_value(health: Health) -> dict[str, Any]:
 def _line(health: Health) -> str:
     place = health.files[-1] if health.files else "in memory"
     text = f"{place}: {health.messages} messages, {health.bytes / 1e6:.1f} MB"
+    if health.unwritten:
+        text += f", {health.unwritten} not written"
     if health.drops:
         text += f", {health.drops.total()} dropped"
     if health.mixed:

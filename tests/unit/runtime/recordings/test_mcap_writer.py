@@ -414,6 +414,38 @@ def full_disk(monkeypatch):
     return lambda full: monkeypatch.setattr(sink.os, "write", refuse if full else really)
 
 
+def test_what_a_full_disk_kept_out_of_the_file_counts_as_unwritten_and_not_as_recorded(tmp_path, full_disk):
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue)
+    for sequence in (1, 2):
+        queue.put(odometry(sequence))
+        recorder.step(sequence * S)
+    steps = iter(range(3 * S, 10**6 * S, S))
+    wait_until(lambda: recorder.step(next(steps)) or recorder._writer._sink.pending == 0, "the disk")
+    full_disk(True)
+    for sequence in (3, 4, 5):
+        queue.put(odometry(sequence))
+        recorder.step(next(steps))
+    health = recorder.close()
+    found = [m.sequence for m in open_recording(tmp_path / "r.mcap").messages()]
+    assert found == [1, 2]
+    assert (health.messages, health.unwritten, health.disk_error) == (2, 3, "No space left on device")
+    assert health.bytes == (tmp_path / "r.mcap").stat().st_size
+
+
+def test_a_file_that_could_not_be_ended_for_want_of_space_is_counted_after_the_next_one_began(tmp_path, full_disk):
+    queue = IngestQueue()
+    recorder = make_recorder(tmp_path, queue, max_bytes=1)
+    full_disk(True)
+    queue.put(odometry(1))
+    recorder.step(S)
+    full_disk(False)
+    queue.put(odometry(2))
+    health = recorder.close()
+    assert len(health.files) == 2
+    assert (health.messages, health.unwritten) == (1, 1)
+
+
 def test_a_snapshot_that_fails_on_a_full_disk_is_reported_and_the_next_one_is_written(tmp_path, full_disk):
     queue = IngestQueue()
     recorder = SnapshotRecorder(
