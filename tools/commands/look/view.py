@@ -111,9 +111,10 @@ def _live(arguments: argparse.Namespace) -> int:
         session = stack.enter_context(open_bus(arguments, "observer"))
         codec.prime()
         intake, subscribe_all = session.subscribe_all("**")
-        listener = BusListener(intake, RunTimeline(_explainer(arguments), arguments.robot), broadcast, arguments.sender)
+        timeline, clock = RunTimeline(_explainer(arguments), arguments.robot), MonotonicClock()
+        listener = BusListener(intake, timeline, broadcast, arguments.sender, clock.now_ns())
         print(f"http://127.0.0.1:{port}/ shows {endpoint}; Ctrl-C stops it", flush=True)
-        listener.run(MonotonicClock(), lambda: stop.requested)
+        listener.run(clock, lambda: stop.requested)
         subscribe_all.undeclare()
     return 0
 

@@ -5,7 +5,6 @@ The listener is a plain subscriber with its own queue. It publishes nothing and 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
@@ -34,6 +33,8 @@ class BusListener:
       timeline: State of the conversion.
       broadcast: Receives the events.
       sender: Leave out executives whose id does not begin with this.
+      now_ns: Monotonic time.
+      wall: Unix nanoseconds, for the stamps of reception.
     """
 
     def __init__(
@@ -41,20 +42,22 @@ class BusListener:
         intake: IngestQueue,
         timeline: RunTimeline,
         broadcast: EventBroadcast,
-        sender: str = "",
-        now: Instant | None = None,
+        sender: str,
+        now_ns: int,
+        wall: Callable[[], int] = wall_ns,
     ) -> None:
         self._intake = intake
         self._timeline = timeline
         self._broadcast = broadcast
         self._sender = sender
         self._began_ns: int | None = None
-        self._previous = now or Instant(time.monotonic_ns(), wall_ns())
+        self._wall = wall
+        self._previous = Instant(now_ns, wall())
 
-    def poll(self, now: Instant | None = None) -> None:
-        """Convert and broadcast the messages received since the last call; `now` for tests."""
+    def poll(self, now_ns: int) -> None:
+        """Convert and broadcast the messages received since the last call; none counts as later than `now_ns`."""
         events: list[Event] = []
-        now = now or Instant(time.monotonic_ns(), wall_ns())
+        now = Instant(now_ns, self._wall())
         for raw in self._intake.drain():
             message = _read(raw)
             if message is not None and self._wanted(raw):
@@ -67,7 +70,7 @@ class BusListener:
         loop = Loop(POLL_NS, clock)
         while not stopped():
             loop.wait_for_next_period()
-            self.poll()
+            self.poll(clock.now_ns())
 
     def _at_s(self, raw: Raw, now: Instant) -> float:
         """Seconds since the arrival of the first message, by the clock that never goes back."""

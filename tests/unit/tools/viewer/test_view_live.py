@@ -9,7 +9,6 @@ from contextlib import contextmanager
 
 import pytest
 
-from tailor.runtime.bus.arrival import Instant
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
@@ -137,11 +136,11 @@ def test_a_port_in_use_is_an_error_of_one_line() -> None:
 
 
 def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
-    intake, broadcast = IngestQueue(), EventBroadcast()
-    listener = BusListener(intake, RunTimeline(), broadcast, now=Instant(0, 10**18))
+    intake, broadcast, wall = IngestQueue(), EventBroadcast(), iter((10**18, 10**18 + 10**9))
+    listener = BusListener(intake, RunTimeline(), broadcast, "", 0, wall.__next__)
     intake.put(raw(status()))
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
-    listener.poll(Instant(10**9, 10**18 + 10**9))
+    listener.poll(10**9)
     with broadcast.subscribe() as page:
         events = json.loads(page.next(0))
     assert [kind for _, kind, _ in events] == ["state", "action", "belief", "odom"]
@@ -151,11 +150,11 @@ def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
 
 def test_a_wall_clock_that_is_set_back_stops_no_page() -> None:
     intake, broadcast, hour_ns = IngestQueue(), EventBroadcast(), 3600 * 10**9
-    listener = BusListener(intake, RunTimeline(), broadcast, now=Instant(0, 10**18))
-    for k in range(1, 11):
-        wall_ns = 10**18 + k * 10**9 - hour_ns * (k > 5)
+    walls = [10**18 + k * 10**9 - hour_ns * (k > 5) for k in range(11)]
+    listener = BusListener(intake, RunTimeline(), broadcast, "", 0, iter(walls).__next__)
+    for k, wall_ns in list(enumerate(walls))[1:]:
         intake.put(raw(m.Odometry(0, float(k), 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=wall_ns - 1000))
-        listener.poll(Instant(k * 10**9, wall_ns))
+        listener.poll(k * 10**9)
     with broadcast.subscribe() as page:
         events = json.loads(page.next(0))
     assert [fields["x"] for _, kind, fields in events if kind == "odom"] == [float(k) for k in range(1, 11)]
@@ -189,6 +188,6 @@ def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
     intake.put(Raw("exec/status", b"hello", None, "text/plain", True, 1))
     intake.put(Raw(good.key, good.payload, good.attachment, good.encoding, False, 1))
     intake.put(raw(status(), sender="cd" * 16))
-    BusListener(intake, RunTimeline(), broadcast, sender="ab").poll()
+    BusListener(intake, RunTimeline(), broadcast, "ab", 0).poll(1)
     with broadcast.subscribe() as page:
         assert json.loads(page.next(0)) == []
