@@ -32,9 +32,11 @@ def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
     """Parse a selection: words such as `odom`, `agilo/*`, `exec/**`, `nav_msgs/msg/Odometry`, separated by commas.
 
     Raises:
-      UsageError: A word is neither a topic name nor a pattern nor a type.
+      UsageError: A word is neither a topic name nor a pattern nor a type, or `include` has texts without a word.
     """
     parts = [tuple(word for text in texts for word in text.split(",") if word) for texts in (include, exclude)]
+    if include and not parts[0]:
+        raise UsageError(f"topics {','.join(include)!r}: expected at least one, e.g. odom")
     for word in (*parts[0], *parts[1]):
         if word not in TOPICS and "/" not in word and "*" not in word:
             names = ", ".join(TOPICS)

@@ -58,8 +58,9 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
     predicted = np.interp(free.chosen, values, seconds)
     axis.plot([free.chosen], [predicted], "o", color="black", markersize=4)
-    unit = "" if free.variable.periodic else f"{free.variable.quantity} [{free.variable.unit}], "
-    axis.set_xlabel(f"{unit}chosen: {predicted:.1f} s", fontsize="small")
+    unit = "" if free.variable.unit in ("", "1") else f" [{free.variable.unit}]"
+    swept = "" if free.variable.periodic else f"{free.variable.quantity}{unit}, "
+    axis.set_xlabel(f"{swept}chosen: {predicted:.1f} s", fontsize="small")
     if not free.variable.periodic:
         axis.set_ylabel("time [s]", fontsize="small")
     axis.yaxis.set_major_locator(MaxNLocator(4))

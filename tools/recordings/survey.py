@@ -50,6 +50,15 @@ class Stream:
         self.last_ns, self._sequence = max(self.last_ns, recorded.log_ns), recorded.sequence
 
 
+@dataclass(frozen=True, slots=True)
+class _Result:
+    """Result of a task, and the first tick that reported it."""
+
+    goal: str
+    result: str
+    tick: int
+
+
 @dataclass(slots=True)
 class Survey:
     """Statistics of a recording."""
@@ -64,7 +73,7 @@ class Survey:
     work_ms: list[float] = field(default_factory=list)
     skipped: int = 0  # whole periods lost
     _mode: dict[str, str] = field(default_factory=dict)
-    _result: str = ""
+    _results: dict[str, _Result] = field(default_factory=dict)  # last one, by sender
 
     @property
     def span_ns(self) -> tuple[int, int]:
@@ -87,7 +96,7 @@ def survey(recording: Recording) -> Survey:
         if isinstance(message, Rejected):
             stream.rejected[message.reason] += 1
         elif kind in _COUNTERS:
-            _COUNTERS[kind](counted, recorded.key, message)
+            _COUNTERS[kind](counted, recorded, message)
     return counted
 
 
@@ -104,33 +113,42 @@ def _percentile(ordered: list[float], q: int) -> float:
     return ordered[low] + (ordered[min(low + 1, len(ordered) - 1)] - ordered[low]) * (position - low)
 
 
-def _status(counted: Survey, key: str, message: ExecStatus) -> None:
+def _status(counted: Survey, recorded: Recorded, message: ExecStatus) -> None:
+    key, sender = recorded.key, recorded.sender
     counted.modes[message.mode] += 1
     if message.mode == "FAULT" and counted._mode.get(key) != "FAULT":
         counted.faults.append(reason_text(message.reason, message.detail))
-    if message.result and message.result != counted._result:
+    counted._mode[key] = message.mode
+    last = counted._results.get(sender)
+    if not message.result:
+        counted._results.pop(sender, None)
+    elif last is None or (last.goal, last.result) != (message.goal, message.result):
         result = result_text(message.result, message.result_reason, message.result_detail)
         counted.results.append((message.goal, result))
-    counted._mode[key], counted._result = message.mode, message.result
+        counted._results[sender] = _Result(message.goal, message.result, message.tick)
 
 
-def _driver(counted: Survey, key: str, message: DriverState) -> None:
+def _driver(counted: Survey, recorded: Recorded, message: DriverState) -> None:
+    key = recorded.key
     if message.mode in ("stopped", "estopped") and counted._mode.get(key) != message.mode:
         counted.stops.append(f"{key.partition('/')[0]}: {reason_text(message.reason, message.detail)}")
     counted._mode[key] = message.mode
 
 
-def _finished(counted: Survey, _: str, message: ActionFinished) -> None:
+def _finished(counted: Survey, _: Recorded, message: ActionFinished) -> None:
     counted.actions.append(message)
 
 
-def _tick(counted: Survey, _: str, message: TickReport) -> None:
+def _tick(counted: Survey, recorded: Recorded, message: TickReport) -> None:
+    last = counted._results.get(recorded.sender)
+    if message.goal and last is not None and last.tick < message.tick:
+        del counted._results[recorded.sender]  # another task begins, perhaps with the same goal and result
     counted.late_ms.append(message.lateness_ns / 1e6)
     counted.work_ms.append(message.work_ns / 1e6)
     counted.skipped += message.skipped
 
 
-_COUNTERS: dict[type, Callable[[Survey, str, Any], None]] = {
+_COUNTERS: dict[type, Callable[[Survey, Recorded, Any], None]] = {
     ExecStatus: _status,
     DriverState: _driver,
     ActionFinished: _finished,

@@ -11,6 +11,7 @@ from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
 
+UNITLESS = ("", "1")
 GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
@@ -101,4 +102,6 @@ def _counted(number: int, noun: str) -> str:
 
 
 def _value(value: float, unit: str) -> str:
-    return f"{math.degrees(value):z.0f}°" if unit == "rad" else f"{value:z.2f} {unit}".strip()
+    if unit == "rad":
+        return f"{math.degrees(value):z.0f}°"
+    return f"{value:z.2f}" if unit in UNITLESS else f"{value:z.2f} {unit}"

@@ -85,6 +85,52 @@ def test_info_summarises_a_recording(tmp_path, capsys):
     assert info["ticks"]["skipped_periods"] == 1
 
 
+def results_of(tmp_path, capsys, *rows):
+    """Results that `tailor info` lists, of (goal, result, sender, requested goal), one row a tick."""
+    script = Script(tmp_path / "results.mcap")
+    for tick, (goal, result, sender, requested) in enumerate(rows):
+        status = replace(example(ExecStatus), tick=tick, goal=goal, result=result, sender=sender)
+        script.say(tick * 100, "exec/status", status, sender)
+        script.say(tick * 100, "exec/tick", replace(example(TickReport), tick=tick, goal=requested), sender)
+    _, info = json_of(capsys, "info", script.close())
+    return [episode["goal"] for episode in info["episodes"]]
+
+
+OTHER = "ef" * 16
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ([("(g)", "", EXECUTIVE, "(g)"), ("(g)", "achieved", EXECUTIVE, ""), ("(g)", "achieved", EXECUTIVE, "")], 1),
+        ([("(g)", "achieved", EXECUTIVE, "(g)"), ("(h)", "achieved", EXECUTIVE, "(h)")], 2),
+        ([("(g)", "achieved", EXECUTIVE, "(g)"), ("(g)", "achieved", EXECUTIVE, "")], 1),
+        (
+            [
+                ("(g)", "achieved", EXECUTIVE, ""),
+                ("(g)", "achieved", EXECUTIVE, "(g)"),
+                ("(g)", "achieved", EXECUTIVE, ""),
+            ],
+            2,
+        ),
+        ([("(g)", "achieved", EXECUTIVE, ""), ("(g)", "", EXECUTIVE, "(g)"), ("(g)", "achieved", EXECUTIVE, "")], 2),
+        ([("(g)", "failed", EXECUTIVE, ""), ("(g)", "failed", OTHER, ""), ("(g)", "failed", EXECUTIVE, "")], 2),
+    ],
+)
+def test_each_task_is_listed_once_whatever_its_result(tmp_path, capsys, rows, expected):
+    assert len(results_of(tmp_path, capsys, *rows)) == expected
+
+
+@pytest.mark.parametrize("command", ["cut", "replay", "record"])
+@pytest.mark.parametrize("words", ["", ","])
+def test_topics_that_name_none_are_refused_and_not_taken_for_all(command, words, tmp_path, capsys):
+    files = [] if command == "record" else [a_run(tmp_path / "a.mcap")]
+    output = ["-o", str(tmp_path / "b.mcap")] if command != "replay" else []
+    assert main([command, *files, *output, "--topics", words]) == 2
+    assert f"topics {words!r}" in capsys.readouterr().err
+    assert not (tmp_path / "b.mcap").exists()
+
+
 def test_info_in_words_names_the_actions(tmp_path, capsys):
     assert main(["info", a_run(tmp_path / "a.mcap")]) == 0
     output = capsys.readouterr().out

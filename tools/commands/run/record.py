@@ -26,7 +26,7 @@ from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
-from tailor.runtime.recordings.selection import selection
+from tailor.runtime.recordings.selection import Selection, selection
 from tailor.runtime.recordings.snapshot import SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
@@ -74,6 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Record until stopped; 0, or 1 if something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MAX_LIMIT, f"--{name.replace('_', '-')}")
+    wanted = selection(arguments.topics, arguments.exclude)
     stop, notifier = stop_on_signals(), Notifier.from_environment()
     with open_bus(arguments, "people" if arguments.write else "recorder", sender=sender_of(arguments)) as session:
         if arguments.write:
@@ -84,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
                 print(plain(response), file=sys.stdout if accepted else sys.stderr)
             return 0 if accepted else 1
         queue, subscription = session.subscribe_all("**")
-        recorder = _recorder(arguments, queue)
+        recorder = _recorder(arguments, queue, wanted)
         requests = session.service_server(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
         if not (arguments.quiet or notifier.supervised):
             print(_beginning(arguments), file=sys.stderr, flush=True)
@@ -100,8 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if health.drops or health.unwritten or health.disk_error else 0
 
 
-def _recorder(arguments: argparse.Namespace, queue: IngestQueue) -> Recorder | SnapshotRecorder:
-    wanted = selection(arguments.topics, arguments.exclude)
+def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection) -> Recorder | SnapshotRecorder:
     limits = Limits(round(arguments.max_size * 1e6), round(arguments.max_duration * 1e9))
     path = Path(arguments.output or datetime.now().strftime("tailor-%Y%m%d-%H%M%S.mcap"))
     metadata = RecordingMetadata(version("tailor"), wall_ns())

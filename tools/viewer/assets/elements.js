@@ -67,11 +67,11 @@ function signed(value, digits = 1) {
   return `${text.startsWith("-") ? text.replace("-", "−") : `+${text}`} s`;
 }
 
-/** A value in its unit; radians as degrees, which people read. */
+/** A value in its unit; radians as degrees, which people read; "1" is none. */
 function quantity(value, unit) {
   if (value === null || value === undefined) return "–";
   if (unit === "rad") return `${rounded((value * 180) / Math.PI, 0)}°`;
-  return `${rounded(value, 2)} ${unit}`.trim();
+  return unit === "1" ? rounded(value, 2) : `${rounded(value, 2)} ${unit}`.trim();
 }
 
 /** A path of straight lines through points; a null breaks it. */

@@ -154,6 +154,12 @@ def test_what_rounds_to_zero_has_no_sign():
     assert text == "goToPose features (greedy): angle_to 0° (0°), v 0.00 m/s (-0.50 m/s)"
 
 
+def test_a_quantity_without_unit_is_a_plain_number():
+    quantities = (Quantity("out", "1"), Quantity("dist", "m"))
+    text = features_text(Situation("grip", quantities, (0.5, 2.0), (1.0, 2.0)))
+    assert text == "grip features (greedy): out 0.50 (1.00), dist 2.00 m (2.00 m)"
+
+
 @pytest.mark.parametrize("damage", ["a parameter too few", "an id that no message holds", "a negative id"])
 def test_a_damaged_message_has_no_explanation(refined, damage) -> None:
     message = message_of(*refined)
