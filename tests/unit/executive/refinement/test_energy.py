@@ -74,7 +74,7 @@ def test_every_action_that_ships_with_durations_ships_with_energies() -> None:
     for robot in ("agilo", "powercube"):
         durations, _ = load_robot(robot)
         actions = {name.split("/")[0] for name in durations}
-        assert {f"{action}/{kind}" for action in actions for kind in ("duration", "energy")} == set(durations)
+        assert {f"{action}/{kind}" for action in actions for kind in ("duration", "energy")} <= set(durations)
 
 
 def test_weight_of_energy_changes_how_the_arm_passes_its_waypoints() -> None:
