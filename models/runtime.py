@@ -30,6 +30,7 @@ from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_s
 from tailor.schemas.errors import UsageError
 
 ZOO = Path(__file__).resolve().parent / "zoo"
+BESIDE = "_beside"  # end of the name of durations beside objects, after that of the same action's without
 GOLDEN_TOLERANCE = 1e-4  # seconds, joules or probability: the tolerance of export (learning.md)
 
 
@@ -88,7 +89,19 @@ def load_robot(
             durations[name] = model
         elif isinstance(model, OnnxSuccess):
             successes[name] = model
+    _check_beside(durations, folder)
     return durations, successes
+
+
+def _check_beside(durations: Mapping[str, OnnxDuration], folder: Path) -> None:
+    """Raise UsageError if durations beside objects are of other episodes than those without: their means differ."""
+    for name in (name for name in durations if name.endswith(BESIDE)):
+        own = durations.get(name.removesuffix(BESIDE))
+        if own is None or own.card["episodes"].get("sha256") != durations[name].card["episodes"].get("sha256"):
+            raise UsageError(
+                f"{folder / name}.onnx: learned from other episodes than {name.removesuffix(BESIDE)}, "
+                "expected the same (`tailor train` makes both); it may be removed"
+            )
 
 
 def _names(folder: Path) -> list[str]:

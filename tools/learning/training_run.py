@@ -104,7 +104,15 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
         except UsageError as error:
             raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
         _publish(request, source, trained, kind, learner, space, command)
+        if kind == "duration" and all(job[1] != "duration_beside" for job in own):
+            _remove_beside(request, data.manifest["action"])
         yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
+
+
+def _remove_beside(request: TrainingRequest, action: str) -> None:
+    """Remove the model of durations beside objects that was learned before: its mean is that of other episodes."""
+    for path in (request.zoo / request.robot / action).glob("duration_beside.*"):
+        path.unlink()
 
 
 def context_jobs(

@@ -34,12 +34,23 @@ def changed_card(path: Path, **changes: object) -> None:
 def test_all_shipped_models_load_and_name_their_makers() -> None:
     durations, successes = runtime.load_robot("agilo")
     assert set(durations) >= {"goToPose/duration", "approachBall/duration", "dribbleBall/duration"}
-    assert {name.split("/")[1] for name in durations} <= {"duration", "energy"}
+    assert {name.split("/")[1] for name in durations} == {"duration", "duration_beside", "energy"}
     assert set(successes) == {"approachBall/success", "goToPose/clearance"}
     for model in (*durations.values(), *successes.values()):
         assert model.card["episodes"]["count"] >= 1000
         assert model.card["command"].startswith(("tailor gather agilo", "tailor make-models agilo"))
         assert len(model.card["golden"]["arguments"]) == 32
+
+
+@pytest.mark.parametrize("absent", [False, True])
+def test_durations_beside_objects_of_other_episodes_than_those_without_are_refused(zoo, absent) -> None:
+    if absent:
+        duration(zoo).unlink()
+        card_path(duration(zoo)).unlink()
+    else:
+        changed_card(duration(zoo), episodes={**read_card(card_path(duration(zoo)))["episodes"], "sha256": "0" * 64})
+    with pytest.raises(UsageError, match=r"duration_beside.onnx: learned from other episodes than goToPose/duration"):
+        runtime.load_robot("agilo", zoo)
 
 
 def test_a_model_loads_by_name_too() -> None:
@@ -167,7 +178,7 @@ NUMBERS = [0.5] * 32
         ("outputs", ["mean_s"], "outputs is ['mean_s'], expected ['mean_s', 'lower_s', 'upper_s']"),
         ("output_range", [60, 0], "output_range is [60, 0], expected two numbers"),
         ("output_range", [float("nan"), 1], "output_range is [nan, 1]"),
-        ("kind", "magic", "kind is 'magic', expected one of: duration, energy, success"),
+        ("kind", "magic", "kind is 'magic', expected one of: duration, duration_beside, energy, success"),
         ("sha256", None, "sha256 is None, expected text"),
         ("test", {}, "test's mae_s is None, expected a number"),
         ("test", {"mae_s": 1, "mean_duration_s": 1, "learning_curve": 5}, "learning_curve is 5, expected rows of 2"),

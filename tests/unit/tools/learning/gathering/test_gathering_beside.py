@@ -95,9 +95,12 @@ def test_other_failures_do_not_count_against_the_object(beside) -> None:
 
 def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_path: Path) -> None:
     request = TrainingRequest("agilo", tmp_path, seed=1, learner="m5")  # the default blends networks: 40 s
-    (tmp_path / "agilo").mkdir()
+    former = tmp_path / "agilo" / "goToPose" / "duration_beside.onnx"
+    former.parent.mkdir(parents=True)
+    former.write_bytes(b"of other episodes")
     rows = {row["kind"]: row for row in train_action(list(beside), request)}
     assert set(rows) == {"duration", "energy", "clearance"}
+    assert not former.exists(), "its mean would be that of the former durations"
     model = load_model(tmp_path / "agilo" / "goToPose" / "clearance.onnx")
     assert isinstance(model, OnnxSuccess)
     assert "--beside-object" in model.card["command"]
