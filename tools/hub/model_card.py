@@ -80,8 +80,8 @@ def _error(card: Card) -> str:
     test, kind = card["test"], card["kind"]
     if kind in SUCCESS_KINDS:
         return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed failures"
-    unit = UNITS[kind]
-    mean = test[f"mean_{kind}_{unit.lower()}"]
+    unit, quantity = UNITS[kind], "energy" if kind == "energy" else "duration"
+    mean = test[f"mean_{quantity}_{unit.lower()}"]
     return f"{test[f'mae_{unit.lower()}']:.3f} {unit} of {mean:.1f} {unit}"
 
 

@@ -69,6 +69,15 @@ def refused(capsys, *arguments):
 FILES = [f"{ROBOT}/reach/{kind}.{end}" for kind in ("duration", "energy") for end in ("onnx", "card.json")]
 
 
+@pytest.mark.parametrize("robot", sorted(folder.name for folder in ZOO.iterdir() if folder.is_dir()))
+def test_the_models_of_every_robot_that_ships_can_be_shared(robot, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["models", "push", robot, "--to", "./pushed"]) == 0
+    page = (tmp_path / "pushed" / "README.md").read_text()
+    for card in (ZOO / robot).glob("*/*.card.json"):
+        assert f"| {card.parent.name}/{card.name.removesuffix('.card.json')} |" in page
+
+
 def test_models_come_back_from_the_hub_unchanged(hub, tmp_path, capsys):
     assert main(["models", "push", ROBOT, "--to", "user/arm-models", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["pushed"].endswith("/user/arm-models/commit/1")
