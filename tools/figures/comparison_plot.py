@@ -28,8 +28,8 @@ def _draw_axis(plot: Axes, runs: tuple[ComparedRun, ComparedRun], number: int) -
     for run, colour in zip(runs, COLOURS, strict=True):
         if run.commands.shape[1] > number:
             plot.plot(run.commands[:, 0], run.commands[:, number], color=colour, label=run.name, linewidth=1)
-    plot.set_ylabel(f"command {number}")
-    plot.set_xlabel("seconds since setting off")
+    plot.set_ylabel(f"command {next(run.axes[number - 1] for run in runs if len(run.axes) >= number)}")
+    plot.set_xlabel("time since the first motion [s]")
     plot.legend(loc="upper right", fontsize="small")
     plot.grid(alpha=0.3)
 
@@ -45,4 +45,4 @@ def _draw_durations(plot: Axes, runs: tuple[ComparedRun, ComparedRun]) -> None:
             start_s += action.actual_s
     plot.set_yticks(range(len(runs)), [run.name for run in runs])
     plot.invert_yaxis()
-    plot.set_xlabel("seconds of action (line: predicted end)")
+    plot.set_xlabel("time in actions [s] (line: predicted end)")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,12 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, PlanReport, Subgoals
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of_robot
+from tailor.schemas.messages import ActionFinished, ExecStatus, JointCommand, PlanReport, Subgoals, VelocityCommand
+from tailor.schemas.messages.message import Message
 from tailor.schemas.reason_text import result_text
 from tailor.schemas.topics import TOPICS
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
 
 COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
+PERIOD_S = 0.1  # of the executive
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +31,8 @@ class ComparedRun:
     actions: tuple[ActionFinished, ...]
     plans: tuple[PlanReport, ...]
     subgoals: tuple[Subgoals, ...]
-    commands: NDArray[np.float64]  # shape (n, 1 + axes): seconds since the first command that is not zero, values
+    axes: tuple[str, ...]  # of the commands, outlet by outlet, with units: "v [m/s]"
+    commands: NDArray[np.float64]  # shape (n, 1 + axes): seconds since the first motion, values
     result: str
 
     @property
@@ -43,12 +50,14 @@ def compared_run(path: Path) -> ComparedRun:
     run = RecordedRuns(path).runs[0]
     status = _published(run, "status", ExecStatus)
     results = [result_text(s.result, s.result_reason, s.result_detail) for s in status if s.result]
+    axes, commands = _commands(run)
     return ComparedRun(
         name=path.stem,
         actions=tuple(_published(run, "finished", ActionFinished)),
         plans=tuple(_published(run, "plan", PlanReport)),
         subgoals=tuple(_published(run, "subgoals", Subgoals)),
-        commands=_commands(run),
+        axes=axes,
+        commands=commands,
         result=results[-1] if results else "",
     )
 
@@ -64,7 +73,7 @@ def chosen(subgoals: Subgoals) -> dict[str, float]:
 
 
 def command_differences(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
-    """Differences of the commands of two runs, matched by the time since the first command that is not zero.
+    """Differences of the commands of two runs, matched by the time since the first motion.
 
     Returns:
       seconds: Duration of the shorter run; first_s: time of the first difference (nan if there is none); rms, max: of
@@ -87,17 +96,60 @@ def _published(run: RecordedRun, topic: str, kind: type) -> list[Any]:
     return [message for message in messages if isinstance(message, kind)]
 
 
-def _commands(run: RecordedRun) -> NDArray[np.float64]:
-    """Commands from the first one that is not zero."""
-    keys = [key for key in run.published if key.endswith(COMMANDS)]
-    rows = [(r.log_ns / 1e9, *_values(decoded(r))) for key in keys for r in run.published[key]]
-    table = np.array(rows, dtype=np.float64).reshape(len(rows), -1) if rows else np.zeros((0, 1))
-    moving = np.flatnonzero(table[:, 1:].any(axis=1))
+def _commands(run: RecordedRun) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Names of the axes of all outlets, and their commands from the first motion on."""
+    keys = sorted(key for key in run.published if key.endswith(COMMANDS))
+    outlets = [outlet for outlet in (_Outlet.of(run, key) for key in keys) if len(outlet.rows)]
+    if not outlets:
+        return (), np.zeros((0, 1))
+    times = max((outlet.rows[:, 0] for outlet in outlets), key=len)
+    table = np.column_stack([times, *(outlet.at(times) for outlet in outlets)])
+    velocities = np.concatenate([[False], *([outlet.velocity] * len(outlet.names) for outlet in outlets)])
+    in_motion = np.where(velocities, table != 0, table != table[0])[:, 1:].any(axis=1)
+    moving = np.flatnonzero(in_motion)
     table = table[moving[0] :] if moving.size else table[:0]
     if len(table):
         table[:, 0] -= table[0, 0]
-    return table
+    units = _units(keys[0].partition("/")[0])
+    names = (name for outlet in outlets for name in outlet.names)
+    return tuple(f"{name} [{units[name]}]" if units.get(name) else name for name in names), table
 
 
-def _values(message: Any) -> tuple[float, ...]:
-    return tuple(message.velocities) if hasattr(message, "velocities") else (message.v, message.omega)
+def _units(robot: str) -> dict[str, str]:
+    """Units of a robot's axes by name; none where it is not installed."""
+    try:
+        domain = domains.load(spec_of_robot(robot).name)
+    except UsageError:
+        return {}
+    return {axis.name: axis.unit for axis in domain.axes}
+
+
+@dataclass(frozen=True, slots=True)
+class _Outlet:
+    """Commands of one topic: names of its axes, whether zero is rest on them, rows of seconds and values."""
+
+    names: tuple[str, ...]
+    velocity: bool
+    rows: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, run: RecordedRun, key: str) -> _Outlet:
+        recorded = [(r.log_ns / 1e9, decoded(r)) for r in run.published[key]]
+        values = [(at_s, _values(message)) for at_s, message in recorded if isinstance(message, Message)]
+        names = tuple(values[0][1]) if values else ()
+        rows = [(at_s, *named.values()) for at_s, named in values if tuple(named) == names]
+        velocity = any(isinstance(message, VelocityCommand | JointCommand) for _, message in recorded)
+        return cls(names, velocity, np.array(rows, dtype=np.float64).reshape(len(rows), -1))
+
+    def at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Values in force half a period after these times: outlets of one tick are published one after another."""
+        newest = np.searchsorted(self.rows[:, 0], times + PERIOD_S / 2, side="right") - 1
+        return self.rows[np.maximum(newest, 0), 1:]
+
+
+def _values(message: Any) -> dict[str, float]:
+    """Set-points by the name of their axis."""
+    if isinstance(message, JointCommand):
+        return dict(zip(message.names, message.velocities, strict=False))
+    fields = {field.name: getattr(message, field.name) for field in dataclasses.fields(message)}
+    return {name: value for name, value in fields.items() if isinstance(value, float)}

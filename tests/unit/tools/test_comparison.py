@@ -11,9 +11,19 @@ from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import encode
-from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Odometry, TickReport, VelocityCommand
+from tailor.schemas.messages import (
+    ActionFinished,
+    DriverState,
+    ExecStatus,
+    JointCommand,
+    Odometry,
+    TickReport,
+    VelocityCommand,
+)
+from tailor.schemas.messages.kitchen import GripperCommand
 from tailor.schemas.own import example
 from tailor.tools.main import main
+from tailor.tools.recordings.comparison import compared_run
 
 EXECUTIVE, DRIVER = "ab" * 16, "cd" * 16
 MS = 1_000_000
@@ -53,6 +63,22 @@ def a_run(path, speed=0.5, slower_ms=0):
         script.say(at, "exec/status", replace(status, tick=tick, mode=mode, reason="no", goal="(g)", result=result))
     action = replace(finished, action="goToPose", outcome="done", predicted_s=4.0, actual_s=5.0 + slower_ms / 1000)
     script.say(2100, "exec/finished", action)
+    return script.close()
+
+
+def a_run_with_three_outlets(path, bend=0.2):
+    """A mobile manipulator at rest for two ticks; then its base, arm and gripper move."""
+    script = Script(path)
+    for tick in range(1, 11):
+        moving = tick > 2
+        commands = {
+            "cmd_vel": VelocityCommand(0, 0.5 if moving else 0.0, 0.0),
+            "joint_cmd": JointCommand(0, ("pan", "lift"), (0.0, bend if moving else 0.0)),
+            "gripper_cmd": GripperCommand(0, 0.05 if moving else 0.12),
+        }
+        for number, (topic, command) in enumerate(commands.items()):
+            script.say(tick * 100 + number, f"b21/{topic}", command)
+        script.say(tick * 100 + 5, "exec/tick", replace(example(TickReport), tick=tick))
     return script.close()
 
 
@@ -173,3 +199,17 @@ def test_a_file_that_is_no_recording_is_reported_in_one_line_with_exit_code_2(co
     assert main([command, *[str(path)] * (2 if command == "compare" else 1)]) == 2
     output = capsys.readouterr().err
     assert output == f"tailor {command}: {path}: not an MCAP file\n"
+
+
+def test_all_outlets_of_a_robot_are_compared_axis_by_axis(tmp_path, capsys):
+    one = a_run_with_three_outlets(tmp_path / "one.mcap")
+    other = a_run_with_three_outlets(tmp_path / "other.mcap", bend=0.3)
+    code, alike = json_of(capsys, "compare", one, one)
+    assert code == 0
+    assert alike["commands"]["seconds"] == pytest.approx(0.7)  # eight ticks in motion
+    code, apart = json_of(capsys, "compare", one, other)
+    assert code == 1
+    assert apart["commands"]["max"] == pytest.approx(0.1)
+    run = compared_run(Path(one))
+    assert run.axes == ("v [m/s]", "omega [rad/s]", "width [m]", "pan [rad/s]", "lift [rad/s]")
+    assert run.commands[0].tolist() == [0.0, 0.5, 0.0, 0.05, 0.0, 0.2]
