@@ -104,13 +104,28 @@ def formula(tree: LeafFormulas, leaf: int, quantities: Sequence[Quantity], of: s
     terms = []
     for quantity, slope in zip(quantities, tree.slopes[leaf].tolist(), strict=True):
         if abs(slope) >= TOO_SMALL:
-            shown, unit = (slope / DEGREES, f"{of}/°") if quantity.unit == "rad" else (slope, f"{of}/({quantity.unit})")
+            shown = slope / DEGREES if quantity.unit == "rad" else slope
             sign = "-" if shown < 0 else "+"
-            terms.append(f" {sign} {abs(shown):.3g} {unit.replace('(m)', 'm')} · {quantity.name}")
+            terms.append(f" {sign} {abs(shown):.3g} {_per(of, quantity)} · {quantity.name}")
     start = f"{tree.intercept[leaf]:.3g} {of}{''.join(terms)}"
     deviation = "" if tree.std is None else f", ± {tree.std[leaf]:.2f} {of}"
     return f"{start}   [{tree.low[leaf]:.1f} .. {tree.high[leaf]:.1f} {of}{deviation}]"
 
 
+def _per(of: str, quantity: Quantity) -> str:
+    """Unit of a slope."""
+    match quantity.unit:
+        case "" | "1":
+            return of
+        case "rad":
+            return f"{of}/°"
+        case "m":
+            return f"{of}/m"
+        case unit:
+            return f"{of}/({unit})"
+
+
 def _value(value: float, quantity: Quantity) -> str:
-    return f"{value * DEGREES:.0f}°" if quantity.unit == "rad" else f"{value:.2f} {quantity.unit}"
+    if quantity.unit == "rad":
+        return f"{value * DEGREES:.0f}°"
+    return f"{value:.2f}" if quantity.unit in ("", "1") else f"{value:.2f} {quantity.unit}"

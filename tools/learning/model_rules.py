@@ -71,7 +71,7 @@ def tree_number(text: str) -> int:
 def _own(card: Card, boxes: TreeBoxes | None, tree: int, features: NDArray[np.float32]) -> tuple[list[str], Array]:
     if boxes is None:
         raise UsageError(
-            f"a {card['learner']['name']} has no trees to print (--distilled prints a tree distilled from it)"
+            f"the model, by learner {card['learner']['name']}, has no trees (--distilled prints one that is like it)"
         )
     quantities, unit = space_of(card).features, UNITS.get(card["kind"], "")
     lines = leaf_rules.rules_of(boxes, tree, quantities, unit)

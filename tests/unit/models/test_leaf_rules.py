@@ -35,6 +35,12 @@ def test_the_rule_is_of_the_tree_that_says_nearest_to_the_mean(dist: float, rule
     assert applied_rule(boxes(), np.array([dist, 0.1], np.float32), QUANTITIES, "s").startswith(rule)
 
 
+def test_a_quantity_without_a_unit_is_a_plain_number() -> None:
+    bare = (Quantity("out", "1"), Quantity("angle_to", "rad"))
+    rule = applied_rule(boxes(), np.array([2.5, 0.1], np.float32), bare, "s")
+    assert rule.startswith("if out > 2.00 then time = 2 s + 1 s · out ")
+
+
 def test_what_is_not_a_number_meets_no_rule() -> None:
     assert applied_rule(boxes(), np.array([np.nan, 0.1], np.float32), QUANTITIES, "s") == ""
 

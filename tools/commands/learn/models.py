@@ -27,7 +27,7 @@ examples:
   tailor models list
   tailor models show agilo/goToPose/duration
   tailor models rules agilo/goToPose
-  tailor models rules agilo/goToPose --of bag:3
+  tailor models rules b21/grip --of bag:3
   tailor models plot agilo/goToPose --data data/agilo --out out/models
   tailor models check
   tailor models push agilo --to USER/agilo-models         (a repository of the hub, private if it is new)
@@ -36,8 +36,9 @@ examples:
   tailor models push --data data/agilo --to USER/agilo-episodes          (data sets instead of models)
   tailor models pull --data data/theirs --from USER/agilo-episodes
 
-MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), energy or success. ROBOT alone stands for all its models; no
-MODEL stands for all models in the zoo."""
+MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), duration_beside (beside objects), energy, success, or
+clearance (success beside an object). ROBOT alone stands for all its models; no MODEL stands for all models in the zoo.
+--of is for models of trees: a bag (durations of b21) or a forest."""
 VERBS = ("list", "show", "rules", "plot", "check", "push", "pull")
 TAKEN_BY = {  # flag -> verbs; the others would ignore it
     "--json": ("list", "show", "check", *sharing.VERBS),
