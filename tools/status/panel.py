@@ -22,6 +22,7 @@ from tailor.tools.status.picture import (
     TickTimes,
     TopicView,
 )
+from tailor.tools.status.ticks import WINDOW_NS
 
 GOOD, BAD, WEAK = "green", "bold red", "dim"
 MODES = {
@@ -42,7 +43,7 @@ def panel(picture: Picture, endpoint: str) -> RenderableType:
     """The whole picture."""
     parts: list[RenderableType] = [_verdict(picture, endpoint)]
     parts += [_problem(finding) for finding in picture.problems]
-    parts += [_executive(executive) for executive in picture.executives]
+    parts += [_executive(executive, picture.observed_s) for executive in picture.executives]
     if picture.drivers:
         parts.append(_drivers(picture.drivers))
     parts.append(_launcher(picture.launcher))
@@ -66,7 +67,7 @@ def _mode(mode: str) -> Text:
     return Text(plain(mode), MODES.get(mode, BAD))
 
 
-def _executive(executive: ExecutiveView) -> RenderableType:
+def _executive(executive: ExecutiveView, observed_s: float) -> RenderableType:
     grid = Table.grid(padding=(0, 2))
     name = Text(f"executive {executive.sender[:8]}", "bold")
     if executive.silent:
@@ -79,7 +80,7 @@ def _executive(executive: ExecutiveView) -> RenderableType:
         elapsed = f"{executive.action_elapsed_s:.1f} of {executive.action_predicted_s:.1f} s predicted"
         grid.add_row("action", Text(plain(f"{executive.action}  {elapsed}")))
     if executive.ticks is not None:
-        grid.add_row("ticks p50/p99/max", _ticks(executive.ticks))
+        grid.add_row("ticks p50/p99/max", _ticks(executive.ticks, observed_s))
     if executive.realtime:
         granted = ", ".join(f"{name} {value}" for name, value in executive.realtime.items())
         grid.add_row("granted", Text(plain(granted), WEAK))
@@ -91,8 +92,9 @@ def _task(executive: ExecutiveView) -> str:
     return "  ".join(filter(None, (executive.scenario, executive.goal, result)))
 
 
-def _ticks(ticks: TickTimes) -> Text:
-    text = Text(f"{ticks.reported} in the last minute, ")
+def _ticks(ticks: TickTimes, observed_s: float) -> Text:
+    span = "minute" if observed_s >= WINDOW_NS / 1e9 else f"{observed_s:.0f} s"
+    text = Text(f"{ticks.reported} in the last {span}, ")
     text.append(f"{ticks.skipped} skipped", BAD if ticks.skipped else "default")
     return text.append(f"; work {_spread(ticks.work_ms)}, late {_spread(ticks.lateness_ms)} ms")
 

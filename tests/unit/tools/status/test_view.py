@@ -39,7 +39,7 @@ def test_the_verdict_comes_first_and_every_part_has_its_line():
     lines = drawn(Feed().run(2.0))
     assert lines[0] == f"healthy   {ENDPOINT}, observed for 2 s"
     text = "\n".join(lines)
-    for part in ("executive abababab  EXECUTING", "1.0 of 5.0 s predicted", "20 in the last minute, 0 skipped"):
+    for part in ("executive abababab  EXECUTING", "1.0 of 5.0 s predicted", "20 in the last 2 s, 0 skipped"):
         assert part in text
     (row,) = [line.split() for line in lines if line.startswith("agilo  ")]
     assert row == ["agilo", "armed", "abababab", "(executive)", "00000007", "5", "2", "other", "sender", "0.10"]
