@@ -99,10 +99,10 @@ def _certifies(message: RefinementReport, last: RefinementReport) -> bool:
 
 
 def in_force(decisions: Iterable[Decision], at_s: float) -> Decision | None:
-    """The decision in force at a time; None before the first."""
+    """The decision in force at a time; None before the first. The tenths that are printed count, too."""
     newest = None
     for decision in decisions:
-        if decision.at_s <= at_s:
+        if min(decision.at_s, round(decision.at_s, 1)) <= at_s:
             newest = decision
     return newest
 

@@ -45,6 +45,13 @@ def test_a_moment_has_the_decision_in_force() -> None:
     assert in_force(decisions, 99.0).subgoals.actions[0].action == "dribbleBall"
 
 
+def test_the_tenths_that_are_printed_name_a_moment() -> None:
+    first = soccer().decisions[0]
+    for at_s, printed in ((4.23, 4.2), (4.16, 4.2), (4.16, 4.17)):
+        assert in_force([dataclasses.replace(first, at_s=at_s)], printed) is not None
+    assert in_force([dataclasses.replace(first, at_s=4.23)], 4.1) is None
+
+
 def test_deliberation_time_counts_all_ticks_of_the_search_and_no_others() -> None:
     log = log_of(tick(4, 60), report(5, 10), BEGIN, tick(5, 61), report(6, 20, 8.5), tick(6, 31), tick(7, 50))
     (decision,) = log.decisions
