@@ -1,8 +1,4 @@
-"""Print a script that completes commands and flags in a shell.
-
-bash: tailor completion bash > ~/.local/share/bash-completion/completions/tailor
-zsh:  tailor completion zsh > a folder of $fpath, as _tailor
-"""
+"""Print a script that completes commands and flags in a shell."""
 
 from __future__ import annotations
 
@@ -13,12 +9,20 @@ import shtab
 
 from tailor.tools.main import COMMANDS
 
+EPILOG = """\
+examples:
+  tailor completion bash > ~/.local/share/bash-completion/completions/tailor
+  tailor completion zsh > ~/.zfunc/_tailor          (a folder of $fpath)
+  tailor completion fish > ~/.config/fish/completions/tailor.fish"""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor completion`."""
-    parser.add_argument(
-        "shell", choices=shtab.SUPPORTED_SHELLS, metavar="SHELL", help=" or ".join(shtab.SUPPORTED_SHELLS)
-    )
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
+    *most, last = shtab.SUPPORTED_SHELLS
+    shells = f"{', '.join(most)} or {last}"
+    parser.add_argument("shell", choices=shtab.SUPPORTED_SHELLS, metavar="SHELL", help=shells)
 
 
 def run(arguments: argparse.Namespace) -> int:

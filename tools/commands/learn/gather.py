@@ -152,7 +152,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         for line in extracted.left_out:
             Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
-        print(json.dumps(extracted.counts) if arguments.json else f"{out}: {extracted.counts}")
+        found = ", ".join(f"{action} {count}" for action, count in extracted.counts.items())
+        print(json.dumps(extracted.counts) if arguments.json else f"{out}: episodes: {found}")
         return 0
     scenarios = tuple(dict.fromkeys(arguments.on_policy or arguments.active))
     for scenario in scenarios:
