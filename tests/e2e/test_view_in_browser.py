@@ -115,6 +115,8 @@ def test_runs_side_by_side_move_in_step(browser, tmp_path):
     browser.wait(f"{FRAMES_AT}[0] > {first} + 0.9")
     assert browser.value(FRAMES_AT) == pytest.approx([first + 1, second + 1])
     inside = "document.querySelectorAll('iframe')[1].contentDocument"
+    words = f"[...{inside}.querySelectorAll('#scene .grid ~ text')].map((e) => e.getBoundingClientRect().height)"
+    assert browser.value(f"Math.min(...{words})") > 9, "legible, though the panel is wider than the drawing"
     browser.value(f"{inside}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'Home'}}))")
     browser.wait(f"{AT} < 0.01")
     assert browser.errors == []
@@ -348,6 +350,26 @@ def test_a_live_page_follows_pauses_and_survives_the_server(browser: Browser) ->
     with serving(page("live", [], live=True), again, port):
         browser.wait(f"Math.abs(Number(document.querySelector('footer input').max) - {rows[4].at_s}) < 0.01")
     assert browser.errors == []
+
+
+def test_the_scene_of_a_live_page_that_began_empty_folds(browser: Browser) -> None:
+    broadcast = EventBroadcast()
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        opened(browser, f"http://127.0.0.1:{port}/")
+        assert text(browser, "#scene h2 span") == "State"
+        broadcast.publish(rows_of(synthetic_run.soccer_run(), RunTimeline()))
+        browser.wait("document.querySelector('#scene h2 span').textContent === 'Scene'")
+        assert count(browser, "#scene .fold") == 1
+        browser.value("document.querySelector('#scene h2').click()")
+        assert browser.value("document.querySelector('#scene').classList.contains('folded')")
+    browser.errors.clear()  # of the server that is gone
+
+
+def test_without_models_each_variable_is_listed_once(browser: Browser, tmp_path: Path) -> None:
+    opened(browser, written(tmp_path / "plain.html", rows_of(synthetic_run.soccer_run(), RunTimeline())), 1.0)
+    names = browser.value("[...document.querySelectorAll('#choice td:first-child')].map((cell) => cell.textContent)")
+    free = [name for name in names if " at " in name]
+    assert free == ["approachBall: phig at pos2", "approachBall: vg at pos2"]
 
 
 def test_the_stop_button_shows_what_the_drivers_confirm_also_after_a_restart_of_the_server(browser: Browser) -> None:

@@ -147,9 +147,10 @@ class ChoicePanel {
 
   /** Without models: the contents of the messages. */
   listed(subgoals) {
+    const seen = new Set(); // parameters with equal ids are one variable
     const rows = subgoals.actions.flatMap((action) =>
       action.parameters
-        .filter((p) => !p.bound)
+        .filter((p) => !p.bound && !seen.has(p.id) && seen.add(p.id))
         .map((p) => [
           `${action.action}: ${p.name} at ${p.place}`,
           quantity(p.value, p.unit),

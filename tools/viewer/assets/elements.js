@@ -26,19 +26,23 @@ function html(name, attributes = {}, ...children) {
 /** The panel with this id: its body to fill and a line beside its heading. Its heading folds it. */
 function panel(id) {
   const section = document.getElementById(id);
-  const fold = html("button", { type: "button", class: "fold", "aria-expanded": true, "aria-label": "fold" });
   const heading = section.querySelector("h2");
-  heading.prepend(fold);
-  heading.addEventListener("click", () => {
-    fold.setAttribute("aria-expanded", !section.classList.toggle("folded"));
-    dispatchEvent(new Event("resize")); // what was hidden may be out of date
-  });
+  if (!heading.querySelector(".fold")) foldable(section, heading); // a live page may take a panel again
   return {
     section,
     title: section.querySelector("h2 span"),
     note: section.querySelector("h2 small"),
     body: section.querySelector(".body"),
   };
+}
+
+function foldable(section, heading) {
+  const fold = html("button", { type: "button", class: "fold", "aria-expanded": true, "aria-label": "fold" });
+  heading.prepend(fold);
+  heading.addEventListener("click", () => {
+    fold.setAttribute("aria-expanded", !section.classList.toggle("folded"));
+    dispatchEvent(new Event("resize")); // what was hidden may be out of date
+  });
 }
 
 /** A legend: [class, words] pairs. */

@@ -9,11 +9,14 @@ class Field {
     this.run = run;
     this.panel = target;
     this.drawn = "";
+    this.layers = html("div", { class: "layers" });
   }
 
   /** Show a time. Static parts are redrawn only after new events, for another episode, or in another width. */
   show(at) {
-    this.width = Math.min(MOST_PX, this.panel.body.clientWidth || this.width || MOST_PX); // a folded panel has none
+    if (!this.layers.isConnected) this.panel.body.replaceChildren(this.layers);
+    // Not that of the panel, which may be wider: its words would shrink with the drawing. A folded panel has none.
+    this.width = Math.min(MOST_PX, this.layers.clientWidth || this.width || MOST_PX);
     if (this.drawn !== `${this.run.version} ${this.width}`) this.lay();
     const [from, to] = this.run.episode(at);
     if (from !== this.from) this.layEpisode(from, to);
@@ -37,7 +40,7 @@ class Field {
       this.still,
     );
     const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving);
-    this.panel.body.replaceChildren(html("div", { class: "layers" }, below, above));
+    this.layers.replaceChildren(below, above);
     this.panel.title.textContent = "Scene";
     this.panel.note.replaceChildren(this.legend());
   }
@@ -116,10 +119,9 @@ class Field {
     const [left, right, bottom, top] = this.map.box;
     const vertical = ticks(left, right, width / 95).flatMap((x) => {
       const [px] = this.map(x, 0);
-      return [
-        svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height }),
-        svg("text", { x: px + 3, y: height - 4, text: String(x) }),
-      ];
+      const line = svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height });
+      if (px < 16 || px > width - 16) return [line]; // a number there would lie on those of y, or be cut
+      return [line, svg("text", { x: px + 3, y: height - 4, text: String(x) })];
     });
     const horizontal = ticks(bottom, top, width / 125).flatMap((y) => {
       const [, py] = this.map(0, y);
