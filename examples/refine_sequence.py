@@ -10,7 +10,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 
 go = domains.load("soccer").actions["goToPose"]
-known = {"start": (-2.0, 0.0, 0.0, 0.0), "waypoint": (0.0, 1.0, None, None), "goal": (2.0, 0.0, 0.0, 0.0)}
+known = {"start": (-2.0, 0.0, 0.0, 0.0), "waypoint": (0.0, 1.0, None, None), "goal": (-1.0, -1.0, 3.14, 0.0)}
 variables: list[Variable] = []
 for place, values in known.items():
     for parameter, value in zip(go.parameters[:4], values, strict=True):  # x, y, phi, v
