@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tailor.tools.figures.paths import COLOURS
+from tailor.tools.figures.signed_degrees import count_both_ways
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 
 SIZE_IN = 2.9  # of one plot
@@ -63,8 +64,7 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
     axis.set_xlabel(f"{swept}chosen: {predicted:.1f} s", fontsize="small")
     if not free.variable.periodic:
         axis.set_ylabel("time [s]", fontsize="small")
-    if free.variable.periodic:  # -180° to 180°, as the text has them
-        degrees = range(-135, 181, 45)
-        axis.set_thetagrids([degree % 360 for degree in degrees], [f"{degree}°" for degree in degrees])
+    if free.variable.periodic:
+        count_both_ways(axis)
     axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

@@ -14,6 +14,7 @@ from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules.model_queries import distilled_duration, space_of
 from tailor.models.rules.rule_text import QUANTITY_NAMES, conditions, formula, leaf_boxes
 from tailor.tools.figures.learned_regions import Region, swept
+from tailor.tools.figures.signed_degrees import count_both_ways
 
 Array = NDArray[np.float64]
 
@@ -41,6 +42,7 @@ def figure7(figure: Any, model: OnnxDuration, region: Region) -> None:
     left.legend(fontsize="small")
     polar = figure.add_subplot(1, 2, 2, projection="polar")
     polar.plot(angle, mean)
+    count_both_ways(polar)
     polar.yaxis.set_major_locator(MaxNLocator(4))
     polar.set(ylim=(0, None), rlabel_position=112)
     polar.set_title(f"the same, {QUANTITY_NAMES[unit]} [{unit}] outwards", fontsize="medium")

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from tailor.tools.evaluations.refinement.sweep import Array, Sweep
 from tailor.tools.figures.paths import draw_side_by_side
+from tailor.tools.figures.signed_degrees import count_both_ways
 from tailor.tools.figures.track import Track
 
 MODEL, SIMULATED, BAND = "#1f77b4", "#2c3e50", "#b8c4cc"
@@ -32,7 +33,7 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
     for number, axis in enumerate(polar):
         _draw(axis, sweep, number)
         axis.set_title(TITLES[number], fontsize="medium")
-    polar[0].legend(loc="upper left", bbox_to_anchor=(-0.38, 1.16), fontsize="small")
+    top.legend(*polar[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     top.suptitle(f"seconds over the heading at the ball; speed there {sweep.v:.2f} m/s; start {sweep.seed}")
     draw_side_by_side(bottom.subplots(1, len(tracks)), tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -43,6 +44,7 @@ def _draw(axis: Any, sweep: Sweep, number: int) -> None:
     """One polar plot, with both minima of it."""
     _draw_curves(axis, sweep, number)
     _draw_minima(axis, sweep, number)
+    count_both_ways(axis)
     axis.set_rlabel_position(112)
     axis.yaxis.set_major_formatter("{x:g} s")
     axis.tick_params(labelsize="small")
