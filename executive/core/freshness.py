@@ -10,6 +10,7 @@ from tailor.schemas.topics import TOPICS, key_of
 
 RATE_WINDOW_NS = 1_000_000_000
 MAX_ROUND_TRIP_NS = 750_000_000  # 300 ms each way, a period of the driver state, and 50 ms; below 800 ms one way
+SILENT_S = 1.0  # of the known sender of a topic without a limit of freshness: then another one counts
 MIN_RATE = 0.6  # of the nominal rate; half the rate is below it, a stall of 0.3 s in a second is above
 
 
@@ -59,7 +60,8 @@ def of_known_senders(
 ) -> tuple[Sample, ...]:
     """The samples without those of a second sender of one of `topics`, e.g. of a simulator that was started twice.
 
-    It counts once the known sender is stale, e.g. after a restart: two places of one robot make no belief.
+    It counts once the known sender is silent, e.g. after a restart: two places of one robot make no belief, and what
+    one of them sees is not where the other one stands.
     """
     keys = {key_of(topic, robot): topic for topic in topics}
     known = {key: (stream.sender, stream.samples[-1][0]) for key, stream in streams.items()}
@@ -67,7 +69,7 @@ def of_known_senders(
     for sample in samples:
         topic = keys.get(sample.key)
         sender, arrival_ns = known.get(sample.key, (sample.sender, sample.arrival_ns))
-        if topic is None or sample.sender == sender or _is_stale(topic, arrival_ns, sample.arrival_ns):
+        if topic is None or sample.sender == sender or _is_silent(topic, arrival_ns, sample.arrival_ns):
             known[sample.key] = (sample.sender, sample.arrival_ns)
             kept.append(sample)
     return tuple(kept)
@@ -96,6 +98,11 @@ def _is_stale(topic: str, arrival_ns: int | None, now_ns: int) -> bool:
     if limit_s is None:
         return False
     return arrival_ns is None or now_ns - arrival_ns > limit_s * 1e9
+
+
+def _is_silent(topic: str, arrival_ns: int, now_ns: int) -> bool:
+    limit_s = TOPICS[topic].fresh_s or SILENT_S
+    return now_ns - arrival_ns > limit_s * 1e9
 
 
 def _without_old(stream: Stream, since_ns: int) -> Stream:

@@ -61,7 +61,9 @@ REASONS: dict[Reason, Row] = {
     Reason.DRIVER_NOT_ARMED: Row(DISARMED, "the driver is not armed", "mode and reason of the driver"),
     Reason.DRIVER_OBEYS_ANOTHER: Row(DISARMED, "the driver obeys another executive", "sender id, first 8 digits"),
     Reason.CLOCK_BACKWARD: Row(HOLDING, "the time of this tick lies before the last one", ""),
-    Reason.INPUT_STALE: Row(HOLDING, "a required sensor is stale or has never been received", "topics"),
+    Reason.INPUT_STALE: Row(
+        HOLDING, "a required sensor is stale or has never been received", "topics; what is wrong with joint states"
+    ),
     Reason.INPUT_SLOW: Row(HOLDING, "a required sensor is below 60 % of its rate: no action starts", "topics, rates"),
     Reason.BELIEF_NOT_READY: Row(HOLDING, "the belief does not yet suffice to act", ""),
     Reason.ROUND_TRIP: Row(HOLDING, "command and driver state take too long, there and back", "age of the echo, limit"),

@@ -12,8 +12,8 @@ from tailor.executive.core.state import Inputs
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.reasons import Reason
-from tailor.schemas.messages import ActionFinished, Sample
-from tests.support.toy_domain import driver, line_context, odometry
+from tailor.schemas.messages import ActionFinished, Odometry, Sample
+from tests.support.toy_domain import LineDomain, driver, line_context, odometry
 from tests.unit.executive.core.test_core import GOAL, TICK, drive, messages
 
 FAR = {"home": {"x": 0.0}, "a": {"x": 1.5}, "b": {"x": 2.0}}  # the first action takes three seconds
@@ -138,3 +138,24 @@ def test_a_second_sender_of_a_sensor_counts_only_once_the_first_is_silent():
     assert states[59].task.result == "achieved"
     assert [state.belief.x for state in states[60:]] == [states[59].belief.x] * 5 + [5.0] * 15
     assert states[-1].cause is None or states[-1].cause.reason is not Reason.INPUT_STALE
+
+
+@pytest.mark.promise("P6")
+def test_a_second_sender_of_a_sensor_without_a_limit_counts_once_the_first_is_silent_for_a_second():
+    """What a second simulator's camera sees is not where the robot stands; a camera that was restarted is believed."""
+
+    class Seeing(LineDomain):
+        sensors = ("odom", "objects")
+
+    def world(n, given, x):
+        first, second = (
+            Sample("agilo/objects", Odometry(n * TICK, at, 0.0, 0.0, 0.0, 0.0), n * TICK, n, sender * 16)
+            for at, sender in ((x, "cd"), (5.0, "ef"))
+        )
+        samples = (first,) if n == 1 else (first, second) if n <= 60 else (second,)
+        return dataclasses.replace(given, samples=(*given.samples, *samples))
+
+    context = dataclasses.replace(line_context(), domain=Seeing())
+    states = [state for state, _, _ in drive(context, world=world, ticks=80)]
+    assert max(state.belief.x for state in states[:60]) < 1.1
+    assert [state.belief.x == 5.0 for state in states[60:]] == [False] * 10 + [True] * 10
