@@ -12,7 +12,6 @@ COLUMNS = (  # beside the arguments; as tailor.models.episodes.episodes writes t
     ("episode", "", "number of the episode"),
     ("tick", "", "number of the 10 Hz tick in the episode"),
     ("work_j", "J", "work of the drives until the next tick; NaN: not recorded"),
-    ("in_context", "", "whether it was decided beside objects, of which the arguments know nothing"),
     ("duration_s", "s", "duration of the whole episode"),
     ("success", "", "whether the action achieved its effect"),
     ("finished", "", "whether its controller finished"),

@@ -118,6 +118,8 @@ def test_the_card_of_data_names_the_parts_of_each_configuration(tmp_path, monkey
     command = ["models", "push", "--data", "data", "--to", "./pushed", "--license", "cc-by-4.0"]
     assert main(command) == 0
     card = DatasetCard.load(tmp_path / "pushed" / "README.md")
+    described = [line.split(" | ")[0] for line in card.text.splitlines() if line.startswith("| ")]
+    assert described.count("| in_context") == described.count("| tick") == len(card.data.configs)
     assert (card.data.license, card.data.size_categories) == ("cc-by-4.0", ["n<1K"])
     for each in card.data.configs:
         (files,) = each["data_files"]
