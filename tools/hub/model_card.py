@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from huggingface_hub import EvalResult, ModelCardData
 
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
+from tailor.models.cards.card_shape import TEST_FIGURES
 
 TAGS = ["robotics", "onnx", "tailor", "action-models"]
 METRICS = {  # of the hub, by kind: name of the metric, entry of the card's test
@@ -80,9 +81,8 @@ def _error(card: Card) -> str:
     test, kind = card["test"], card["kind"]
     if kind in SUCCESS_KINDS:
         return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed failures"
-    unit, quantity = UNITS[kind], "energy" if kind == "energy" else "duration"
-    mean = test[f"mean_{quantity}_{unit.lower()}"]
-    return f"{test[f'mae_{unit.lower()}']:.3f} {unit} of {mean:.1f} {unit}"
+    (error, mean), unit = TEST_FIGURES[kind], UNITS[kind]
+    return f"{test[error]:.3f} {unit} of {test[mean]:.1f} {unit}"
 
 
 def _arguments(cards: Sequence[Card]) -> Iterator[str]:

@@ -73,7 +73,7 @@ def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
 
 
 def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
-    """Feature space of each kind of model of the action by itself: "duration", "energy", "success".
+    """Feature space of each kind of model of the action by itself: "duration", "duration_beside", "energy", "success".
 
     Args:
       request: Names the spaces, or leaves them to the defaults.
@@ -85,7 +85,8 @@ def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder:
     """
     plain = _space(request.features, arguments, folder)
     energy = request.energy_features or ENERGY_FEATURES.get(plain.name, plain.name)
-    return {"duration": plain, "energy": _space(energy, arguments, folder), "success": plain}
+    of_energy = _space(energy, arguments, folder)
+    return {"duration": plain, "duration_beside": plain, "energy": of_energy, "success": plain}
 
 
 def context_space(arguments: tuple[str, ...], folder: Path) -> FeatureSpace:

@@ -94,9 +94,7 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     spaces = feature_spaces(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [
-        (data, kind, learner, train, spaces[kind.partition("_")[0]]) for kind, learner, train in _jobs(data, request)
-    ]
+    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in _jobs(data, request)]
     every = (*own, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:

@@ -12,7 +12,8 @@ from rich.markup import escape
 from rich.table import Column, Table
 
 from tailor.executive.composition import required_ranges
-from tailor.models.cards.card import Card
+from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
+from tailor.models.cards.card_shape import TEST_FIGURES
 from tailor.models.cards.checks import check_ranges
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
@@ -151,14 +152,11 @@ def _all(zoo: Path) -> list[str]:
 
 
 def _quality(card: Card) -> str:
-    test = card["test"]
-    match card["kind"]:
-        case "duration" | "duration_beside":
-            return f"MAE {test['mae_s']:.3f} s of {test['mean_duration_s']:.1f} s"
-        case "energy":
-            return f"MAE {test['mae_j']:.3f} J of {test['mean_energy_j']:.1f} J"
-        case _:
-            return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed"
+    test, kind = card["test"], card["kind"]
+    if kind in SUCCESS_KINDS:
+        return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed"
+    (error, mean), unit = TEST_FIGURES[kind], UNITS[kind]
+    return f"MAE {test[error]:.3f} {unit} of {test[mean]:.1f} {unit}"
 
 
 def _list(cards: list[Card], as_json: bool) -> None:

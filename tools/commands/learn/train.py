@@ -11,6 +11,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 
+from tailor.models.cards.card import SUCCESS_KINDS, UNITS
+from tailor.models.cards.card_shape import TEST_FIGURES
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.target_zoo import target_zoo
@@ -114,9 +116,8 @@ def _table(rows: list[dict[str, Any]]) -> Table:
 
 def _results(row: dict[str, Any]) -> tuple[str, str, str, str]:
     """Mean, error, accuracy and missed failures; empty where the kind of model has none."""
-    if row["kind"] in ("success", "clearance"):
+    if row["kind"] in SUCCESS_KINDS:
         return "", "", f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
-    unit, mean = ("J", "mean_energy_j") if row["kind"] == "energy" else ("s", "mean_duration_s")
+    (error, mean), unit = TEST_FIGURES[row["kind"]], UNITS[row["kind"]]
     low, high = row["mae_ci95"]
-    error = f"{row[f'mae_{unit.lower()}']:.3f} {unit} ({low:.3f} .. {high:.3f})"
-    return f"{row[mean]:.2f} {unit}", error, "", ""
+    return f"{row[mean]:.2f} {unit}", f"{row[error]:.3f} {unit} ({low:.3f} .. {high:.3f})", "", ""

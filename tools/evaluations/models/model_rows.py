@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive import domains
+from tailor.executive.interfaces.models import Models
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.examples import duration_examples, success_examples
 from tailor.models.inference import OnnxDuration, OnnxSuccess
@@ -86,7 +87,7 @@ def duration_columns(durations: Mapping[str, OnnxDuration], path: str, data: Dat
     finished = [episode for episode in data.episodes if episode.finished]
     examples = duration_examples(finished, 1)
     in_context = np.array([episode.in_context for episode in finished])
-    beside = durations.get(f"{path}_beside", durations[path])
+    beside = durations[Models(durations, {}).duration_path(path, in_context=True)]
     predicted = predicted_by(durations[path], beside, examples.arguments, in_context)
     off = predicted.mean_s - examples.targets
     mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
