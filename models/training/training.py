@@ -97,25 +97,39 @@ def train_regression(
     rows = target.examples(finished, n_i)
     first = target.examples(judging, 1).of(apart)
     held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, judged_by)
-    mean, lower, upper = held_out.predict_interval(space(first.arguments))
-    errors = first.targets - mean
     chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
-    mae, ci = scores.mean_with_ci(np.abs(errors), rng)
-    on_policy = np.array([episode.on_policy for episode in judging])[np.isin(judged_by, apart)]
-    unit = target.unit
     test = {
         "n": len(first.targets),
         "training_episodes": len(kept),
-        f"mean_{target.kind}_{unit}": float(np.mean([target.whole(episode) for episode in judging])),
-        f"mae_{unit}": mae,
-        "mae_ci95": list(ci),
-        f"mae_first_ticks_{unit}": _mae(held_out, rows.of(np.intersect1d(apart, judged_by)), space),
-        f"bias_{unit}": float(-errors.mean()),
-        **judged(first.targets, lower, upper, on_policy),
+        f"mean_{target.kind}_{target.unit}": float(np.mean([target.whole(episode) for episode in judging])),
+        **_tested(held_out, rows, first, judging, space, target.unit, rng),
         "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
     return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space, judged_by), n_i, test)
+
+
+def _tested(
+    held_out: Any,
+    rows: Examples,
+    first: Examples,
+    judging: Sequence[Episode],
+    space: FeatureSpace,
+    unit: str,
+    rng: np.random.Generator,
+) -> dict[str, Any]:
+    """Errors and intervals of a learner on episodes that it has not seen: those of `first`, out of `judging`."""
+    mean, lower, upper = held_out.predict_interval(space(first.arguments))
+    errors = first.targets - mean
+    mae, ci = scores.mean_with_ci(np.abs(errors), rng)
+    on_policy = {episode.number: episode.on_policy for episode in judging}
+    return {
+        f"mae_{unit}": mae,
+        "mae_ci95": list(ci),
+        f"mae_first_ticks_{unit}": _mae(held_out, rows.of(first.groups), space),
+        f"bias_{unit}": float(-errors.mean()),
+        **judged(first.targets, lower, upper, np.array([on_policy[number] for number in first.groups.tolist()])),
+    }
 
 
 def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) -> Any:
