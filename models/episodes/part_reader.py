@@ -44,11 +44,11 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
         first = str(error).partition("\n")[0]  # others list the columns
         raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
     numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
-    absent = {name for name in OPTIONAL if name not in table.column_names}
-    missing = [name for name in (*PER_EPISODE, *numbers) if name not in {*table.column_names, *absent}]
+    present = set(table.column_names)
+    wanted = [name for name in (*PER_EPISODE, *numbers, WORK) if name in present or name not in OPTIONAL]
+    missing = [name for name in wanted if name not in present]
     if missing or not table.num_rows:
         raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
-    wanted = [name for name in (*PER_EPISODE, *numbers, WORK) if name not in absent]
     checked = table.select(list(dict.fromkeys(wanted)))
     _check_columns(checked, numbers, path)
     return checked
