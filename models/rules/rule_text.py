@@ -17,6 +17,7 @@ Floats = NDArray[np.float32]
 
 DEGREES = 180 / np.pi
 TOO_SMALL = 0.0005  # seconds (joules) per unit; smaller slopes are left out
+UNITLESS = ("", "1")  # units that are not printed
 QUANTITY_NAMES = {"s": "time", "J": "energy"}  # of what a formula gives, by its unit
 
 
@@ -115,7 +116,7 @@ def formula(tree: LeafFormulas, leaf: int, quantities: Sequence[Quantity], of: s
 def _per(of: str, quantity: Quantity) -> str:
     """Unit of a slope."""
     match quantity.unit:
-        case "" | "1":
+        case unit if unit in UNITLESS:
             return of
         case "rad":
             return f"{of}/°"
@@ -128,4 +129,4 @@ def _per(of: str, quantity: Quantity) -> str:
 def _value(value: float, quantity: Quantity) -> str:
     if quantity.unit == "rad":
         return f"{value * DEGREES:.0f}°"
-    return f"{value:.2f}" if quantity.unit in ("", "1") else f"{value:.2f} {quantity.unit}"
+    return f"{value:.2f}" if quantity.unit in UNITLESS else f"{value:.2f} {quantity.unit}"

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from tailor.models.rules.rule_text import UNITLESS
 from tailor.tools.figures.paths import COLOURS
 from tailor.tools.figures.signed_degrees import count_both_ways
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
@@ -59,12 +60,12 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
     predicted = np.interp(free.chosen, values, seconds)
     axis.plot([free.chosen], [predicted], "o", color="black", markersize=4)
-    unit = "" if free.variable.unit in ("", "1") else f" [{free.variable.unit}]"
+    unit = "" if free.variable.unit in UNITLESS else f" [{free.variable.unit}]"
     swept = "" if free.variable.periodic else f"{free.variable.quantity}{unit}, "
     axis.set_xlabel(f"{swept}chosen: {predicted:.1f} s", fontsize="small")
-    if not free.variable.periodic:
-        axis.set_ylabel("time [s]", fontsize="small")
     if free.variable.periodic:
         count_both_ways(axis)
+    else:
+        axis.set_ylabel("time [s]", fontsize="small")
     axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

@@ -6,12 +6,12 @@ import math
 
 from rich.table import Table
 
+from tailor.models.rules.rule_text import UNITLESS
 from tailor.schemas.messages import RefinementReport
 from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
 
-UNITLESS = ("", "1")
 GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
