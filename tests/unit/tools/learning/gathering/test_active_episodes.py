@@ -6,10 +6,12 @@ from pathlib import Path
 import pytest
 
 from tailor.models.episodes.episodes import read_data_set
-from tailor.tools.learning.gathering import active_episodes, manifests
+from tailor.tools.learning.gathering import active_episodes
 from tailor.tools.learning.gathering.active_episodes import Active, run_active, selected
 from tailor.tools.learning.gathering.refined_choices import Choice
 from tailor.tools.main import main
+
+pytestmark = pytest.mark.usefixtures("few_draws")
 
 FLAGS = ["--active", "word-I", "--episodes", "2", "--pool", "2", "--jobs", "1", "--json"]
 
@@ -23,14 +25,6 @@ def test_the_choices_with_the_largest_disagreement_are_selected() -> None:
     chosen = selected(pool, 2)
     assert [each.std_s for each in chosen["a"]] == [0.3, 0.2]
     assert [each.std_s for each in chosen["b"]] == [9.0]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_draws():
-    """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(manifests, "RANGE_DRAWS", 64)
-        yield
 
 
 @pytest.fixture(scope="module")

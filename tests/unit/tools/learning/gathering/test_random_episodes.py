@@ -10,11 +10,13 @@ import pytest
 
 from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning.gathering import manifests, random_episodes
+from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, DataSetSpec
 from tailor.tools.learning.gathering.random_episodes import PART
 from tailor.tools.main import main
 from tests.support import far_backend
+
+pytestmark = pytest.mark.usefixtures("few_draws")
 
 COUNT = PART + 4
 
@@ -22,14 +24,6 @@ COUNT = PART + 4
 def gather(folder: Path, *more: str, seed: int = 7) -> int:
     settings = ["--episodes", str(COUNT), "--jobs", "1", "--seed", str(seed), "--json"]
     return main(["gather", "agilo", "goToPose", "--out", str(folder), *settings, *more])
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_draws():
-    """Ranges in manifests from few samples: each preparation of three data sets saves a second."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(manifests, "RANGE_DRAWS", 64)
-        yield
 
 
 @pytest.fixture(scope="module")
