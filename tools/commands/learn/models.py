@@ -92,10 +92,10 @@ def run(arguments: argparse.Namespace) -> int:
         for name, model in zip(names, loaded, strict=True):
             print(_rules(model, name, arguments))
     else:
-        from tailor.tools.figures import learned
+        from tailor.tools.figures.learned_models import pictures
 
         for model in loaded:
-            for path in learned.draw(model, arguments.data, arguments.out or OUT):
+            for path in pictures.draw(model, arguments.data, arguments.out or OUT):
                 print(path)
     return 0
 

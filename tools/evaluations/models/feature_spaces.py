@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str, Path]:
-    from tailor.tools.figures import learned_reports
+    from tailor.tools.figures.learned_models import reports
 
     columns: dict[str, Any] = {
         "direct: x [m]": test.arguments[:, 0],
@@ -61,8 +61,6 @@ def _plots(rows: list[dict[str, Any]], test: Examples, folder: Path) -> dict[str
     }
     names, errors, intervals = ([row[key] for row in rows] for key in ("space", "mae_s", "mae_ci95"))
     return {
-        "error by feature space": learned_reports.bars(folder / "feature-spaces.png", names, errors, intervals),
-        "time against a feature of each": learned_reports.against_features(
-            folder / "figure6b.png", columns, test.targets
-        ),
+        "error by feature space": reports.bars(folder / "feature-spaces.png", names, errors, intervals),
+        "time against a feature of each": reports.against_features(folder / "figure6b.png", columns, test.targets),
     }

@@ -121,9 +121,9 @@ def _failures(model: OnnxSuccess, data: DataSet) -> Row:
 
 
 def _plot(name: str, made: Sequence[Row], folder: Path) -> Mapping[str, Path]:
-    from tailor.tools.figures import learned_reports
+    from tailor.tools.figures.learned_models import reports
 
     named = {", ".join(filter(None, (row["action"], row.get("chosen_in", "")))): row for row in made}
     predicted, observed = ({each: row[key] for each, row in named.items()} for key in ("predicted_s", "observed_s"))
-    path = learned_reports.scatter(folder / f"{name}.png", predicted, observed)
+    path = reports.scatter(folder / f"{name}.png", predicted, observed)
     return {"predicted against observed, fresh episodes": path}

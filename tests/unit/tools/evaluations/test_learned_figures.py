@@ -7,8 +7,8 @@ import pytest
 
 from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import load_model
-from tailor.tools.figures.learned import flat_from
-from tailor.tools.figures.learned_regions import JOINTS, POSES, region_of, swept
+from tailor.tools.figures.learned_models.pictures import flat_from
+from tailor.tools.figures.learned_models.regions import JOINTS, POSES, region_of, swept
 from tailor.tools.main import main
 
 

@@ -8,13 +8,13 @@ import pytest
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.tools.evaluations.models import floors
 from tailor.tools.evaluations.models.model_rows import duration_columns
-from tailor.tools.figures import learned_reports
+from tailor.tools.figures.learned_models import reports
 from tailor.tools.main import main
 
 
 def test_models_are_judged_on_random_arguments_and_on_the_executives_choices(tmp_path, capsys, monkeypatch):
     panels = []
-    monkeypatch.setattr(learned_reports, "scatter", lambda path, predicted, observed: panels.extend(predicted) or path)
+    monkeypatch.setattr(reports, "scatter", lambda path, predicted, observed: panels.extend(predicted) or path)
     words = ["evaluate", "models", "--domain", "arm", "--episodes", "6", "--on-policy", "letter-I", "--runs", "2"]
     (tmp_path / "models.png").write_bytes(b"")
     assert main([*words, "--jobs", "1", "--json", "--store", str(tmp_path), "--report", str(tmp_path)]) == 0

@@ -13,7 +13,7 @@ from tailor.models.cards.card import UNITS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules.model_queries import distilled_duration, space_of
 from tailor.models.rules.rule_text import QUANTITY_NAMES, conditions, formula, leaf_boxes
-from tailor.tools.figures.learned_regions import Region, swept
+from tailor.tools.figures.learned_models.regions import Region, swept
 from tailor.tools.figures.signed_degrees import count_both_ways
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from tailor.models.episodes.examples import Examples, success_examples
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
-from tailor.tools.figures import learned_regions, learned_shapes
+from tailor.tools.figures.learned_models import regions, shapes
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -38,9 +38,9 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
     episodes = read_data_set(folder).episodes if (folder / "manifest.json").exists() else ()
     pictures: dict[str, Callable[[Any], None]] = {}
     if isinstance(model, OnnxDuration):
-        region = learned_regions.region_of(card)
+        region = regions.region_of(card)
         if region is not None:
-            pictures |= {"figure7": lambda figure: learned_shapes.figure7(figure, model, region)}
+            pictures |= {"figure7": lambda figure: shapes.figure7(figure, model, region)}
         if card["test"].get("learning_curve"):
             pictures |= {"learning-curve": lambda figure: _learning_curve(figure, card)}
         target = REGRESSION_TARGETS[card["kind"]]
@@ -49,9 +49,9 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
             rows = target.examples(observed, 1)
             pictures |= {"predicted-observed": lambda figure: _predicted_observed(figure, model, rows)}
             if region is not None:
-                pictures |= {"error-by-region": lambda f: learned_regions.error_by_region(f, model, rows, region)}
+                pictures |= {"error-by-region": lambda f: regions.error_by_region(f, model, rows, region)}
     else:
-        pictures |= {"figure8": lambda figure: learned_shapes.figure8(figure, model)}
+        pictures |= {"figure8": lambda figure: shapes.figure8(figure, model)}
         if episodes:
             pictures |= {"reliability": lambda figure: _reliability(figure, model, episodes)}
     out.mkdir(parents=True, exist_ok=True)

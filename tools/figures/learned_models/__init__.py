@@ -1,0 +1,1 @@
+"""Pictures of action models, and of their evaluation."""
