@@ -19,6 +19,8 @@ def load_hardware(named: str) -> Hardware:
       UsageError: There is no such class, it is no Hardware, it names no robot, or it needs arguments.
     """
     where, _, name = named.rpartition(":")
+    if not where:
+        raise UsageError(f"{named}: expected FILE.toml, package.module:Class or FILE.py:Class")
     try:
         found = getattr(_module(where), name)
     except (ImportError, AttributeError, OSError, SyntaxError, ValueError) as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.schemas.errors import UsageError
+from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.loading import load_hardware
 from tailor.simnodes.hardware.plain_robot import PlainRobot
@@ -18,13 +19,25 @@ def hardware_of(named: str, endpoint: str) -> Hardware:
       endpoint: Tailor's bus.
 
     Raises:
-      UsageError: There is no such hardware, or its topics cannot be on the bus that is to carry them.
+      UsageError: There is no such hardware, plain topics cannot drive it, or they cannot be on the bus that is to
+        carry them.
     """
     if not named.endswith(".toml"):
         return load_hardware(named)
     settings = read_plain_settings(named)
+    _check_commands(named, settings.robot)
     _check_bus(named, settings, endpoint)
     return PlainRobot(settings, endpoint)
+
+
+def _check_commands(file: str, robot: str) -> None:
+    """Raise UsageError if a robot obeys other commands: a twist would carry the speeds of its joints, or lack some."""
+    commands = shipped_driver_spec(robot).command_topics
+    if commands != ("cmd_vel",):
+        raise UsageError(
+            f"{file}: {robot} obeys {', '.join(commands)}, but plain topics carry cmd_vel alone; expected "
+            "MODULE:CLASS of a Hardware"
+        )
 
 
 def _check_bus(file: str, settings: PlainSettings, endpoint: str) -> None:

@@ -11,7 +11,8 @@ WRONG = {
     "math:Rover": "has no attribute 'Rover'",
     "missing.py:Rover": "no file missing.py",
     "fractions:Fraction": "no subclass of",
-    "Rover": "expected package.module:Class",
+    "Rover": r"^Rover: expected FILE\.toml, package\.module:Class or FILE\.py:Class$",
+    ":Rover": "expected FILE",
     "tailor.simnodes.hardware.interface:Hardware": "robot is empty",
 }
 

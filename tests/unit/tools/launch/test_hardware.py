@@ -1,0 +1,27 @@
+"""Hardware as people name it: a file of plain topics drives robots that obey cmd_vel alone."""
+
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.launch.hardware import hardware_of
+
+ELSEWHERE = '[bus]\nconnect = "tcp/192.0.2.1:7447"\n'
+REFUSED = {
+    "b21": "b21 obeys cmd_vel, joint_cmd, gripper_cmd, but plain topics carry cmd_vel alone",
+    "powercube": "powercube obeys joint_cmd, but plain topics carry cmd_vel alone",
+    "nobody": "no robot 'nobody'",
+}
+
+
+@pytest.mark.parametrize("robot", REFUSED)
+def test_a_robot_that_obeys_other_commands_is_refused(tmp_path, robot):
+    file = tmp_path / "robot.toml"
+    file.write_text(f'robot = "{robot}"\n{ELSEWHERE}')
+    with pytest.raises(UsageError, match=REFUSED[robot]):
+        hardware_of(str(file), "tcp/127.0.0.1:7447")
+
+
+def test_a_robot_that_obeys_cmd_vel_is_driven_by_plain_topics(tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text(f'robot = "agilo"\n{ELSEWHERE}')
+    assert hardware_of(str(file), "tcp/127.0.0.1:7447").robot == "agilo"
