@@ -18,6 +18,7 @@ from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 GRACE_S = 2.0  # beyond the planner's own limit; after that the process that runs it must be gone
 REUSE_FREE_PORTIONS = 128  # plans of some twenty steps
+MAX_FACTS = 12  # in the detail of a task that is unsolvable
 
 Way = Literal["searched", "suffix", "improved", "external"]
 
@@ -142,11 +143,21 @@ def validated(
 ) -> planning.Work[PlanFound]:
     """Result of the built-in search; without its plan if that is unsound from the problem's initial state."""
     refusal = _REFUSALS.get(result.status)
-    cause = Cause(refusal, result.reason) if refusal is not None else None
+    cause = Cause(refusal, _detail(result, problem)) if refusal is not None else None
     plan = result.plan
     if plan is not None and (fault := (yield from planning.validation(plan, domain, planning.Objects(problem)))):
         plan, cause = None, Cause(Reason.PLAN_UNSOUND, fault)
     return PlanFound(result.status, way, plan, result.generated, result.visited, cause)
+
+
+def _detail(result: planning.Result, problem: planning.Problem) -> str:
+    """Text of the search; what is unsolvable is so from a state, of which people can only guess what the belief has."""
+    if result.status != "unsolvable":
+        return result.reason
+    changing = {effect.atom.predicate for action in problem.domain.actions for effect in action.effects}
+    facts = sorted(f"({' '.join(fact)})" for fact in problem.initial if fact[0] in changing)
+    shown = " ".join([*facts[:MAX_FACTS], *(["..."] if len(facts) > MAX_FACTS else [])])
+    return f"{result.reason}, from {shown or 'a state without facts'}"
 
 
 def request_for(context: Context, problem: planning.Problem, number: int, now_ns: int) -> PlanRequest:

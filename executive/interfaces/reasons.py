@@ -79,7 +79,9 @@ REASONS: dict[Reason, Row] = {
     Reason.PLANNER_FAILED: Row(PLAN, "the external planner failed; the search takes over", "outcome, its text"),
     Reason.PLAN_UNREADABLE: Row(PLAN, "the external planner's output is no plan; the search takes over", "first error"),
     Reason.PLAN_UNSOUND: Row(PLAN, "the plan does not reach the goal; the search takes over", "first fault"),
-    Reason.UNSOLVABLE: Row(TASK, "the search has proven that there is no plan", "text of the search"),
+    Reason.UNSOLVABLE: Row(
+        TASK, "the search has proven that there is no plan", "text of the search; the abstract state, as believed"
+    ),
     Reason.SEARCH_LIMIT: Row(TASK, "the search reached a limit without a plan", "the limit"),
     Reason.PDDL_UNSUPPORTED: Row(TASK, "the search does not support the problem", "the construct"),
     Reason.NOT_INSTANTIABLE: Row(TASK, "the predicates over a label exclude each other", "step and label"),

@@ -1,0 +1,29 @@
+"""The detail of a task that is unsolvable: from which state, of what actions can change."""
+
+from __future__ import annotations
+
+from tailor.executive.interfaces.reasons import Cause, Reason
+from tests.support.toy_domain import PROBLEM, line_context
+from tests.unit.executive.core.test_core import drive
+
+NOT_EVEN = "the goal cannot be reached, not even without delete effects"
+UNKNOWN = "(and (visited a) (place home))"  # nothing makes a place
+
+
+def cause_of(context):
+    *_, (state, _, _) = drive(context, goal=UNKNOWN, ticks=5)
+    return state.task.result_cause
+
+
+def test_it_names_the_believed_state_without_what_no_action_changes():
+    assert cause_of(line_context()) == Cause(Reason.UNSOLVABLE, f"{NOT_EVEN}, from (at home)")
+
+
+def test_of_many_facts_it_names_twelve():
+    names = [f"p{k:02d}" for k in range(20)]
+    places = {name: {"x": 0.1} for name in ("home", "a", "b", *names)}
+    problem = PROBLEM.replace("home a b)", f"home a b {' '.join(names)})")
+    problem = problem.replace("(at home)", "(at home) " + " ".join(f"(visited {name})" for name in names))
+    cause = cause_of(line_context(places=places, problem=problem))
+    listed = " ".join(f"(visited {name})" for name in names[:11])
+    assert cause == Cause(Reason.UNSOLVABLE, f"{NOT_EVEN}, from (at home) {listed} ...")
