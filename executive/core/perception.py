@@ -13,7 +13,7 @@ from tailor.executive.core.freshness import (
     stale_topics,
     with_samples,
 )
-from tailor.executive.core.joint_readings import without_faulty
+from tailor.executive.core.measurements import fastest_of, without_faulty
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
@@ -31,7 +31,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
     now_ns = max(now_ns, state.now_ns)
     received = of_known_senders(domain.sensors, domain.robot, state.streams, inputs.samples)
     sensors = {key_of(topic, domain.robot) for topic in domain.sensors}
-    joint_readings, samples = without_faulty(state.joint_readings, sensors, received)
+    measurements, samples = without_faulty(state.measurements, sensors, received, fastest_of(domain))
     readings = tuple(s for s in samples if s.key in sensors)
     second_ago = now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
@@ -44,7 +44,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
         carried=relocations(domain, belief) != relocations(domain, state.belief),
         arrivals=newest_arrivals(state.arrivals, samples),
         streams=with_samples(state.streams, tuple(s for s in received if s.key in sensors), now_ns),
-        joint_readings=joint_readings,
+        measurements=measurements,
         overruns_ns=overruns,
         arming=_driver_of(context, state.arming, now_ns, inputs),
     )
@@ -135,7 +135,7 @@ def _with_fault(topic: str, fault: str) -> str:
 def _hold(context: Context, state: State) -> Cause | None:
     stale = stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
     if stale:
-        faults = (state.joint_readings.faults.get(key_of(topic, context.domain.robot), "") for topic in stale)
+        faults = (state.measurements.faults.get(key_of(topic, context.domain.robot), "") for topic in stale)
         return Cause(Reason.INPUT_STALE, ", ".join(map(_with_fault, stale, faults)))
     if (age_ns := state.arming.echo_age_ns) > MAX_ROUND_TRIP_NS:
         return Cause(Reason.ROUND_TRIP, f"{age_ns / 1e6:.0f} ms, limit {MAX_ROUND_TRIP_NS / 1e6:.0f} ms")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.core.execution import Running
 from tailor.executive.core.freshness import Stream
-from tailor.executive.core.joint_readings import JointReadings
+from tailor.executive.core.measurements import Measurements
 from tailor.executive.core.modes import Mode
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
@@ -90,7 +90,7 @@ class State:
     fault: Cause | None = None
     arrivals: Mapping[str, int] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)  # of the sensors, to know their rates
-    joint_readings: JointReadings = field(default_factory=JointReadings)
+    measurements: Measurements = field(default_factory=Measurements)
     overruns_ns: tuple[int, ...] = ()  # ticks of the last second before which whole periods were lost
     arming: Arming = field(default_factory=Arming)
     task: Task = field(default_factory=Task)

@@ -62,7 +62,7 @@ REASONS: dict[Reason, Row] = {
     Reason.DRIVER_OBEYS_ANOTHER: Row(DISARMED, "the driver obeys another executive", "sender id, first 8 digits"),
     Reason.CLOCK_BACKWARD: Row(HOLDING, "the time of this tick lies before the last one", ""),
     Reason.INPUT_STALE: Row(
-        HOLDING, "a required sensor is stale or has never been received", "topics; what is wrong with joint states"
+        HOLDING, "a required sensor is stale or has never been received", "topics; what is wrong with their messages"
     ),
     Reason.INPUT_SLOW: Row(HOLDING, "a required sensor is below 60 % of its rate: no action starts", "topics, rates"),
     Reason.BELIEF_NOT_READY: Row(HOLDING, "the belief does not yet suffice to act", ""),

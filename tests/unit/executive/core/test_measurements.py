@@ -1,15 +1,17 @@
-"""Joint states that a belief cannot read: they are no measurements, so the arm stands instead of moving blind."""
+"""Messages that no belief can use are no measurements, so the robot stands instead of moving blind."""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import pytest
 
-from tailor.executive.core.joint_readings import JointReadings, without_faulty
+from tailor.executive import domains
+from tailor.executive.core.measurements import Measurements, fastest_of, without_faulty
 from tailor.executive.core.modes import Mode
 from tailor.executive.interfaces.reasons import Cause, Reason
-from tailor.schemas.messages import JointState, Sample
+from tailor.schemas.messages import JointState, Odometry, PoseEstimate, Sample
 from tests.support.toy_domain import LineDomain, driver, line_context, odometry
 from tests.unit.executive.core.test_core import TICK, drive
 
@@ -34,6 +36,20 @@ def reading(state, now_ns=0, number=0, sender="cd" * 16):
     return Sample(KEY, state, now_ns, number, sender)
 
 
+STILL = Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)
+HERE = PoseEstimate(0, 0.0, 0.0, 0.0, 0.1, 0.1, 0.1)
+IMPOSSIBLE = [
+    ("odom", dataclasses.replace(STILL, v=-1.01), "has v at -1.01"),
+    ("odom", dataclasses.replace(STILL, omega=2.01), "has omega at 2.01"),
+    ("pose", dataclasses.replace(HERE, x=-1.1e8), "has x at -1.1e+08"),
+    ("pose", dataclasses.replace(HERE, y=1.1e8), "has y at 1.1e+08"),
+]
+POSSIBLE = [
+    ("odom", dataclasses.replace(STILL, x=1e12, v=-1.0, omega=2.0)),
+    ("pose", dataclasses.replace(HERE, x=1e8, y=-1e8)),
+]
+
+
 class Arm(LineDomain):
     """The toy robot, whose joints must be known while it moves."""
 
@@ -42,14 +58,14 @@ class Arm(LineDomain):
 
 
 def known():
-    return without_faulty(JointReadings(), {KEY}, (reading(WHOLE),))[0]
+    return without_faulty(Measurements(), {KEY}, (reading(WHOLE),))[0]
 
 
 @pytest.mark.parametrize(("state", "fault"), FAULTY)
 def test_a_joint_state_that_no_belief_can_read_is_no_measurement_and_says_why(state, fault):
     odom = odometry(0, 0.0, 1)
     assert without_faulty(known(), {KEY}, (odom, reading(state))) == (
-        JointReadings({KEY: ("pan", "lift")}, {KEY: fault}),
+        Measurements({KEY: ("pan", "lift")}, {KEY: fault}),
         (odom,),
     )
 
@@ -66,8 +82,8 @@ def test_a_driver_that_lost_a_joint_while_it_was_restarted_is_not_believed():
 
 
 def test_a_first_state_without_joints_names_none():
-    readings, samples = without_faulty(JointReadings(), {KEY}, (reading(JointState(0)),))
-    assert (readings, samples) == (JointReadings({}, {KEY: "lacks joints"}), ())
+    readings, samples = without_faulty(Measurements(), {KEY}, (reading(JointState(0)),))
+    assert (readings, samples) == (Measurements({}, {KEY: "lacks joints"}), ())
 
 
 def test_joint_states_that_are_no_sensor_of_the_robot_are_not_judged():
@@ -106,3 +122,54 @@ def test_no_second_sender_takes_the_place_of_one_whose_joint_states_lost_a_joint
     context = dataclasses.replace(line_context(), domain=Arm())
     states = [state for state, _, _ in drive(context, world=world, ticks=40)]
     assert {s.mode for s in states[12:]} == {Mode.HOLDING}
+
+
+@pytest.mark.parametrize(("topic", "message", "fault"), IMPOSSIBLE)
+def test_motion_and_places_that_no_robot_has_are_no_measurements(topic, message, fault):
+    key = f"agilo/{topic}"
+    sample = Sample(key, message, 0, 1, "cd" * 16)
+    assert without_faulty(Measurements(), {key}, (sample,), (1.0, 2.0)) == (Measurements({}, {key: fault}), ())
+    assert without_faulty(Measurements(), set(), (sample,), (1.0, 2.0)) == (Measurements(), (sample,))
+
+
+@pytest.mark.parametrize(("topic", "message"), POSSIBLE)
+def test_what_a_robot_may_do_is_a_measurement(topic, message):
+    key = f"agilo/{topic}"
+    sample = Sample(key, message, 0, 1, "cd" * 16)
+    assert without_faulty(Measurements({}, {key: "has v at 9"}), {key}, (sample,), (1.0, 2.0)) == (
+        Measurements(),
+        (sample,),
+    )
+
+
+def test_odometry_of_a_robot_without_velocity_commands_is_not_judged():
+    sample = Sample("agilo/odom", dataclasses.replace(STILL, v=1e9), 0, 1, "cd" * 16)
+    assert without_faulty(Measurements(), {"agilo/odom"}, (sample,), None) == (Measurements(), (sample,))
+
+
+@pytest.mark.parametrize(
+    ("domain", "expected"),
+    [
+        (domains.load("kitchen"), (1.6 * 0.6 + 0.05, 1.6 * 1.0 + 0.05)),
+        (domains.load("arm"), None),
+        (LineDomain(), (1.6 * 0.5 + 0.05, math.inf)),
+    ],
+)
+def test_odometry_may_be_faster_than_the_commands_by_a_margin(domain, expected):
+    fastest = fastest_of(domain)
+    assert fastest == (pytest.approx(expected) if expected else None)
+
+
+@pytest.mark.promise("P6")
+def test_a_robot_whose_odometry_is_impossible_stands_until_it_is_not():
+    def world(n, given, x):
+        odom = odometry(n * TICK, x, n)
+        if 5 < n <= 20:
+            odom = dataclasses.replace(odom, message=dataclasses.replace(odom.message, v=1e14))
+        return dataclasses.replace(given, samples=(odom, driver(n * TICK)))
+
+    states = [state for state, _, _ in drive(line_context(), world=world, ticks=60)]
+    assert {s.mode for s in states[5:10]} == {Mode.EXECUTING}
+    assert {s.cause for s in states[10:20]} == {Cause(Reason.INPUT_STALE, "odom has v at 1e+14")}
+    assert all(s.command == (0.0,) for s in states[10:20])
+    assert states[-1].task.result == "achieved"
