@@ -13,6 +13,7 @@ from tailor.executive.deliberation.context import Context
 from tailor.executive.replay import RecordedTick, replay
 from tailor.runtime.gc_freeze import gc_frozen
 from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind, same_products
+from tailor.schemas.errors import UsageError
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
 from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
@@ -38,6 +39,7 @@ class Verdict:
     machines: str  # differences between the recording platform and this one
     left_out: str  # messages on exec/tick that are not ticks of an executive; empty if none
     took_s: float  # without reading the file, loading models and compiling codecs
+    ends: str = ""  # why the comparison ends before the run does; empty if it does not
 
     @property
     def times_real_time(self) -> float:
@@ -46,7 +48,12 @@ class Verdict:
 
 
 def verify(
-    runs: RecordedRuns, run: RecordedRun, context: Context, writer: TickWriter | None = None, proofs: bool = True
+    runs: RecordedRuns,
+    run: RecordedRun,
+    context: Context,
+    writer: TickWriter | None = None,
+    proofs: bool = True,
+    partly: bool = False,
 ) -> Verdict:
     """Compare one recorded run with the outputs of today's core, up to the first difference.
 
@@ -59,6 +66,10 @@ def verify(
       context: Context for today's core, from `rebuild_context`.
       writer: Receives the outputs of today's core; the comparison then continues to the end of the run.
       proofs: Whether to compute and compare optimality gaps, too.
+      partly: Whether to compare the ticks before one that is not recorded, or whose inputs are not; see Verdict.ends.
+
+    Raises:
+      UsageError: The recording lacks a tick or an input, and, if `partly`, there is none before it.
     """
     here, there = platform_fingerprint(), run.provenance.get("machine", {})
     comparison = RunComparison(
@@ -66,7 +77,14 @@ def verify(
     )
     with gc_frozen():  # as live
         began_s = time.perf_counter()
-        difference = _first_difference(comparison, runs, run, context if proofs else without_proofs(context), writer)
+        difference, ends = None, ""
+        try:
+            used = context if proofs else without_proofs(context)
+            difference = _first_difference(comparison, runs, run, used, writer)
+        except UsageError as error:
+            if not partly or not comparison.ticks:
+                raise
+            ends = str(error)
         took_s = time.perf_counter() - began_s
     return Verdict(
         run.sender,
@@ -77,6 +95,7 @@ def verify(
         contrast(there, here),
         runs.left_out_text(),
         took_s,
+        ends,
     )
 
 
@@ -95,14 +114,15 @@ def _first_difference(
 
 
 def verdict_text(verdict: Verdict) -> str:
-    """The verdict in one line; further lines on platforms and ignored messages if there is something to report."""
+    """The verdict in one line; further lines on an early end, platforms and ignored messages if there are any."""
     summary = f"{verdict.compared} messages of {verdict.ticks} ticks ({verdict.times_real_time:.0f} times real time)"
     left_out = f"\n  {verdict.left_out}" if verdict.left_out else ""
+    ends = f"\n  not verified to the end: {verdict.ends}" if verdict.ends else ""
     machines = f"\n  recorded on {verdict.machines}" if verdict.machines else ""
     if verdict.difference is not None:
         return f"different: {verdict.difference}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
         within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"
-        return f"equal within {within}: {summary}; {rounded}{machines}{left_out}"
-    return f"equal: {summary}{left_out}"
+        return f"equal within {within}: {summary}; {rounded}{ends}{machines}{left_out}"
+    return f"equal: {summary}{ends}{left_out}"

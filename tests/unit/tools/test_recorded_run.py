@@ -1,5 +1,7 @@
 """Anyone may publish on exec/tick: messages that are no ticks of an executive are counted and reported."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,7 +13,7 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import EStop, TickReport
+from tailor.schemas.messages import EStop, TickReport, VelocityCommand
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
@@ -71,7 +73,31 @@ def test_a_damaged_tick_is_detected_by_its_number_and_reported(tmp_path, capsys,
     kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
     path = written(tmp_path / "a.mcap", kept, [(executive, GARBAGE, TICK)])
     assert main(["verify", str(path)]) == 2
-    assert "tick 7 is missing (ignored on exec/tick: 1 malformed)" in capsys.readouterr().err
+    verdict, ends, _ = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r"equal: \d+ messages of 6 ticks \(.*\)", verdict)
+    assert ends.startswith(f"  not verified to the end: {path}: tick 7 is missing (ignored on exec/tick: 1 malformed)")
+
+
+def test_of_two_runs_the_one_that_lacks_no_tick_is_verified(tmp_path, capsys, whole, executive):
+    other = [replace(m, sender=STRANGER) for m in whole if m.sender == executive]
+    kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
+    assert main(["verify", str(written(tmp_path / "a.mcap", [*kept, *other]))]) == 2
+    verdicts = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0].strip() for line in verdicts] == ["equal", "not verified to the end", "equal"]
+
+
+def test_a_difference_before_a_missing_tick_counts(tmp_path, whole, executive):
+    kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
+    first = next(m for m in kept if m.key == "agilo/cmd_vel")
+    changed = replace(decode(VelocityCommand, first.data), v=0.123)
+    kept[kept.index(first)] = replace(first, data=encode(changed))
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept))]) == 1
+
+
+def test_without_its_first_tick_nothing_is_verified(tmp_path, capsys, whole):
+    kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 1]
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept))]) == 2
+    assert "tick 1 is missing" in capsys.readouterr().err
 
 
 def test_a_file_with_only_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):

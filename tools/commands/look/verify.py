@@ -14,7 +14,7 @@ from pathlib import Path
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
-from tailor.tools.recordings.recorded_run import RecordedRuns
+from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 from tailor.tools.recordings.verification import Verdict, verdict_text, verify
 
 
@@ -31,11 +31,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if all runs in the file are equal, 1 if one differs."""
+    """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick or an input of one."""
     runs = RecordedRuns(arguments.recording)
     if arguments.output is None:
         proofs = not arguments.without_proofs
-        verdicts = [verify(runs, run, rebuild_context(run.provenance), proofs=proofs) for run in runs.runs]
+        verdicts = [_verified(runs, run, proofs) for run in runs.runs]
     else:
         verdicts = [_verify_and_write(arguments.output, runs)]
     if arguments.json:
@@ -43,7 +43,14 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         for verdict in verdicts:
             print(verdict_text(verdict))
-    return int(any(verdict.difference for verdict in verdicts))
+    if any(verdict.difference for verdict in verdicts):
+        return 1
+    return 2 if any(verdict.ends for verdict in verdicts) else 0
+
+
+def _verified(runs: RecordedRuns, run: RecordedRun, proofs: bool) -> Verdict:
+    """The verdict on the ticks before one that is missing, e.g. since an executive or the bus had stood still."""
+    return verify(runs, run, rebuild_context(run.provenance), proofs=proofs, partly=True)
 
 
 def _verify_and_write(path: Path, runs: RecordedRuns) -> Verdict:
