@@ -16,6 +16,8 @@ from tailor.models.trees.regression_model import RegressionModel, Values
 
 Array = NDArray[np.float64]
 
+NOT_JUDGED = -1  # kind of episodes that are learned from, but say nothing about the intervals
+
 
 class CalibratedRegressor(RegressionModel):
     """Any `RegressionModel`, and intervals that hold nine tenths of the errors it makes on unseen episodes.
@@ -29,11 +31,12 @@ class CalibratedRegressor(RegressionModel):
         self.inner = inner
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, groups: Any = None, judged: Any = None) -> Self:
+    def fit(self, X: Any, y: Any, groups: Any = None, kinds: Any = None) -> Self:
         """Fit to features (n, f) and seconds (n,); see `RegressionModel.fit`.
 
         The intervals are those of the first row of each episode: predictions are made before an action starts.
-        `judged`, shape (n,), marks the rows whose episodes the intervals are for; None: all.
+        `kinds`, shape (n,), is the kind of each row's episode, as `fit_intervals` has them, or `NOT_JUDGED` if the
+        intervals are not for actions as this one; None: all are of one kind.
 
         Raises:
           ValueError: The rows are not finite numbers.
@@ -44,9 +47,10 @@ class CalibratedRegressor(RegressionModel):
         unseen = getattr(self.inner_, "out_of_fold_", None)  # a learner that was chosen by its errors has them
         mean, std = unseen or out_of_fold(lambda: clone(self.inner), X, y, episodes, self.random_state)
         _, first = np.unique(episodes, return_index=True)
-        first = first if judged is None else first[np.asarray(judged)[first]]
-        errors = (y - mean)[first]
-        self.intervals_ = fit_intervals(X[first], std[first], errors, episodes[first], self.random_state)
+        kinds = np.zeros(len(y), np.int64) if kinds is None else np.asarray(kinds)
+        first = first[kinds[first] != NOT_JUDGED]
+        errors, seed = (y - mean)[first], self.random_state
+        self.intervals_ = fit_intervals(X[first], std[first], errors, episodes[first], seed, kinds[first])
         return self
 
     def predict_with_std(self, X: Any) -> tuple[Values, Values]:

@@ -18,6 +18,7 @@ from tailor.models.regression.out_of_fold import held_out_parts
 
 Floats = NDArray[np.float32]
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
 LEVEL = 0.9
 MAX_LEAVES = 16
@@ -51,8 +52,10 @@ def with_std(features: NDArray[np.floating], std: NDArray[np.floating]) -> Float
     return np.column_stack([features, std]).astype(np.float32)
 
 
-def fit_intervals(features: Array, std: Array, errors: Array, groups: NDArray[np.int64], seed: int) -> Intervals:
-    """Fit intervals that hold LEVEL of the errors, in every third of their widths.
+def fit_intervals(
+    features: Array, std: Array, errors: Array, groups: Numbers, seed: int, kinds: Numbers | None = None
+) -> Intervals:
+    """Fit intervals that hold LEVEL of the errors of each kind of episodes, in every third of their widths.
 
     Args:
       features: One row per episode, shape (n, f).
@@ -60,6 +63,7 @@ def fit_intervals(features: Array, std: Array, errors: Array, groups: NDArray[np
       errors: Observed minus predicted values of unseen episodes, shape (n,).
       groups: Episode of each row, shape (n,).
       seed: Seed of the folds.
+      kinds: Kind of each row, shape (n,), as random or chosen by the optimiser; None: one.
     """
     rows = with_std(features, std)
     width, excess = np.empty(len(errors)), np.empty(len(errors))
@@ -69,7 +73,7 @@ def fit_intervals(features: Array, std: Array, errors: Array, groups: NDArray[np
         width[apart] = upper[leaf] - lower[leaf]
         excess[apart] = np.where(errors[apart] < 0, errors[apart] / lower[leaf], errors[apart] / upper[leaf])
     splits, lower, upper = _grown(rows, errors)
-    factor = _factors(width, excess, upper - lower)
+    factor = _factors(width, excess, np.zeros(len(errors), np.int64) if kinds is None else kinds, upper - lower)
     return Intervals(splits, (factor * lower).astype(np.float32), (factor * upper).astype(np.float32))
 
 
@@ -90,13 +94,18 @@ def _grown(rows: Floats, errors: Array) -> tuple[SplitTree, Array, Array]:
     return splits, lower, upper
 
 
-def _factors(width: Array, excess: Array, leaf_width: Array) -> Array:
-    """Correction of each leaf, (l,), so that unseen errors are held in each third of the widths."""
+def _factors(width: Array, excess: Array, kinds: Numbers, leaf_width: Array) -> Array:
+    """Correction of each leaf, (l,), so that unseen errors are held in each third of the widths.
+
+    Where kinds of episodes differ more than the features tell, the correction is that of the kind that needs most: the
+    optimiser's choices are a quarter of the episodes, and what refinement uses.
+    """
     edges = np.quantile(width, np.arange(1, THIRDS) / THIRDS)
     third, leaf_third = np.searchsorted(edges, width, "right"), np.searchsorted(edges, leaf_width, "right")
     pooled = conformal_quantile(excess, LEVEL)
-    factors = np.full(THIRDS, pooled)
+    factors = np.empty(THIRDS)
     for k in range(THIRDS):
-        if np.sum(third == k) >= MIN_LEAF:
-            factors[k] = conformal_quantile(excess[third == k], LEVEL)
+        some = [excess[third == k], *(excess[(third == k) & (kinds == kind)] for kind in np.unique(kinds))]
+        needed = [conformal_quantile(each, LEVEL) for each in some if len(each) >= MIN_LEAF]
+        factors[k] = max(needed, default=pooled)
     return np.asarray(factors[leaf_third])

@@ -19,7 +19,7 @@ from tailor.models.episodes.examples import Examples, folds, split
 from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
-from tailor.models.regression.calibrated import CalibratedRegressor
+from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
 from tailor.schemas.errors import UsageError
@@ -51,6 +51,11 @@ class Trained:
 def train_duration(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
     """Train a model of durations, in seconds; see `train_regression`."""
     return train_regression(DURATION, episodes, space, learner, seed)
+
+
+def train_duration_alone(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
+    """Train a model of durations with the intervals of those without objects; see `train_duration_beside`."""
+    return train_regression(DURATION, episodes, space, learner, seed, judges=lambda episode: not episode.in_context)
 
 
 def train_duration_beside(episodes: Sequence[Episode], space: FeatureSpace, learner: str, seed: int) -> Trained:
@@ -89,14 +94,14 @@ def train_regression(
     check_count(finished, "finished")
     rng = np.random.default_rng(seed)
     judging = [episode for episode in finished if judges(episode)]
-    judged_by = np.array([episode.number for episode in judging])
+    kinds = {episode.number: int(episode.on_policy) if judges(episode) else NOT_JUDGED for episode in finished}
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
     singles = learners.single_learners(learners.learner_name(target.kind, learner), seed)
     n_i = _best_n_i(target, finished, kept, space, singles, rng)
     rows = target.examples(finished, n_i)
     first = target.examples(judging, 1).of(apart)
-    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, judged_by)
+    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds)
     chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
     test = {
         "n": len(first.targets),
@@ -106,7 +111,7 @@ def train_regression(
         "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
-    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space, judged_by), n_i, test)
+    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space, kinds), n_i, test)
 
 
 def _tested(
@@ -150,10 +155,10 @@ def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) ->
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 
 
-def _fitted(learner: Any, rows: Examples, space: FeatureSpace, judged_by: NDArray[np.int64] | None = None) -> Any:
-    """The learner, fitted; intervals are those of the episodes with the numbers `judged_by`, if it has any."""
-    judged = {} if judged_by is None else {"judged": np.isin(rows.groups, judged_by)}
-    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **judged)
+def _fitted(learner: Any, rows: Examples, space: FeatureSpace, kinds: Mapping[int, int] | None = None) -> Any:
+    """The learner, fitted; if it has intervals, `kinds` are those of its episodes, by their numbers."""
+    known = {} if kinds is None else {"kinds": np.array([kinds[number] for number in rows.groups.tolist()])}
+    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **known)
 
 
 def check_count(episodes: Sequence[Episode], what: str) -> None:

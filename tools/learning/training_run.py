@@ -143,9 +143,11 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
 
     if data.manifest.get("objects"):
         return
-    yield "duration", request.learner, training.train_duration
     if sum(episode.in_context and episode.finished for episode in data.episodes) >= MIN_IN_CONTEXT:
+        yield "duration", request.learner, training.train_duration_alone
         yield "duration_beside", request.learner, training.train_duration_beside
+    else:
+        yield "duration", request.learner, training.train_duration
     with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
     if with_energy >= training.MIN_EPISODES:
         yield "energy", request.learner, partial(training.train_regression, ENERGY)

@@ -31,6 +31,26 @@ def test_every_third_of_the_widths_holds_nine_tenths_of_fresh_errors(intervals) 
     assert result["winkler"] < 0.8 * constant["winkler"]
 
 
+def test_choices_that_err_more_than_the_features_tell_are_held_as_well() -> None:
+    def some(count: int, seed: int):
+        features, std, errors = heteroscedastic(count, seed)
+        chosen = np.arange(count) % 4 == 0
+        return features, std, np.where(chosen, 1.5, 1) * errors, chosen
+
+    features, std, errors, chosen = some(3000, 1)
+    fitted = {
+        kinds is None: fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=kinds)
+        for kinds in (None, chosen.astype(np.int64))
+    }
+    features, std, errors, chosen = some(30_000, 2)
+    held = {}
+    for one_kind, intervals in fitted.items():
+        lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
+        held[one_kind] = coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]
+    assert held[False] == pytest.approx([90, 90, 90], abs=3)
+    assert max(held[True]) < 87
+
+
 def test_skewed_errors_have_skewed_intervals(intervals) -> None:
     assert np.median(intervals.upper / -intervals.lower) == pytest.approx((np.log(20) - 0.7) / 0.65, rel=0.25)
     assert (intervals.lower < 0).all()
