@@ -17,7 +17,6 @@ from tailor.tools.viewer.live.server import serving
 from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
-from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser
@@ -94,32 +93,6 @@ def rows_of(run, timeline: RunTimeline) -> list[Event]:
 def written(path: Path, rows: list[Event]) -> str:
     path.write_text(page(path.stem, rows))
     return path.as_uri()
-
-
-FRAMES_AT = """[...document.querySelectorAll('iframe')]
-  .map((frame) => Number(frame.contentDocument.documentElement.dataset.at))"""
-
-
-def test_runs_side_by_side_move_in_step(browser, tmp_path):
-    """Time counts from each run's first action, wherever it starts in its recording."""
-    runs = {name: rows_of(synthetic_run.soccer_run(), RunTimeline()) for name in ("greedy", "refined")}
-    later_s = 2.0
-    runs["refined"] = [Event(row.at_s + later_s, row.kind, row.fields) for row in runs["refined"]]
-    (tmp_path / "runs.html").write_text(side_by_side("runs", "9 % less", runs))
-    browser.open((tmp_path / "runs.html").as_uri())
-    browser.wait(f"{AT} === 0")
-    browser.wait(f"{FRAMES_AT}.every((at) => at > 0)")
-    first, second = browser.value(FRAMES_AT)
-    assert second == pytest.approx(first + later_s)
-    browser.press("ArrowRight", shift=True)
-    browser.wait(f"{FRAMES_AT}[0] > {first} + 0.9")
-    assert browser.value(FRAMES_AT) == pytest.approx([first + 1, second + 1])
-    inside = "document.querySelectorAll('iframe')[1].contentDocument"
-    words = f"[...{inside}.querySelectorAll('#scene .grid ~ text')].map((e) => e.getBoundingClientRect().height)"
-    assert browser.value(f"Math.min(...{words})") > 9, "legible, though the panel is wider than the drawing"
-    browser.value(f"{inside}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'Home'}}))")
-    browser.wait(f"{AT} < 0.01")
-    assert browser.errors == []
 
 
 def count(browser: Browser, selector: str) -> int:
@@ -216,6 +189,19 @@ def test_a_heading_folds_its_panel_and_what_is_below_moves_up(browser: Browser, 
     browser.value("document.querySelector('#scene h2').click()")
     browser.frame()
     assert browser.value("document.querySelector('#scene .layers').offsetHeight") > 100
+
+
+def test_a_drawing_below_a_heading_of_three_lines_keeps_its_numbers(browser: Browser, soccer: str) -> None:
+    browser.resize(1440, 900)
+    opened(browser, soccer, 4.0)
+    browser.value("document.querySelector('#scene small').append(' an action'.repeat(14))")
+    browser.frame()
+    bottom = "document.querySelector('#scene{}').getBoundingClientRect().bottom"
+    all_bottoms = "[...document.querySelectorAll('#scene .grid ~ text')].map((e) => e.getBoundingClientRect().bottom)"
+    assert browser.value("document.querySelector('#scene h2').offsetHeight") > 50, "three lines"
+    lowest = max(browser.value(all_bottoms))
+    assert lowest < browser.value(bottom.format(" .body")) <= browser.value(bottom.format(""))
+    browser.send("Emulation.clearDeviceMetricsOverride")
 
 
 @pytest.mark.slow

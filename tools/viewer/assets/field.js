@@ -39,7 +39,8 @@ class Field {
       svg("g", {}, ...this.gridLines(width, height)),
       this.still,
     );
-    const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving);
+    const units = { class: "halo", x: width - 4, y: 12, "text-anchor": "end", text: this.headed ? "x, y in m" : "m" };
+    const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving, svg("text", units));
     this.layers.replaceChildren(below, above);
     this.panel.title.textContent = "Scene";
     this.panel.note.replaceChildren(this.legend());
@@ -130,7 +131,7 @@ class Field {
         svg("text", { x: 3, y: py - 3, text: y === 0 ? "0" : String(y) }),
       ];
     });
-    return [...vertical, ...horizontal, svg("text", { x: width - 4, y: 12, "text-anchor": "end", text: this.headed ? "x, y in m" : "m" })];
+    return [...vertical, ...horizontal];
   }
 
   movingParts(at) {

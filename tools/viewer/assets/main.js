@@ -52,9 +52,8 @@ function listen() {
   };
 }
 
-const hash = /^#t=([0-9.]+)$/.exec(location.hash);
 if (given.framed) framed(run, player);
-else player.set(hash ? Number(hash[1]) : given.live ? Infinity : run.end);
+else player.set(addressed() ?? (given.live ? Infinity : run.end));
 addEventListener("resize", () => player.refresh());
 if (given.live) listen();
 if (given.live && given.stop) document.getElementById("heading").append(stopButton(() => given.stop));

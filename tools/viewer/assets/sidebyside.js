@@ -37,7 +37,7 @@ addEventListener("message", ({ source, data }) => {
   if (number < 0) return;
   if (data.report) {
     together.add(number, data.report);
-    player.set(0);
+    player.set(addressed() ?? 0);
     if (together.runs.every(Boolean)) document.documentElement.dataset.ready = "yes";
   }
   if (data.height) frames[number].style.height = `${data.height}px`;
