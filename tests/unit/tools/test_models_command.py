@@ -60,6 +60,17 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert json.loads(capsys.readouterr().out)["kind"] == "duration"
 
 
+def test_the_figures_of_a_card_come_first_and_its_provenance_last(capsys) -> None:
+    assert main(["models", "show", "agilo/goToPose"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    starts = [line.split(":")[0] for line in lines if line.split(":")[0] in ("test", "episodes", "features", "sha256")]
+    assert starts == ["test", "episodes", "features", "sha256"]
+    assert "mae_s" in "".join(lines[:4])
+    last = next(number for number, line in enumerate(lines) if line.startswith("provenance: "))
+    assert not any("executive/actions" in line for line in lines[:last])
+    assert any("executive/actions" in line for line in lines[last:])
+
+
 def test_a_card_with_a_deep_entry_is_shown_in_part(tmp_path: Path, capsys) -> None:
     folder = shutil.copytree(runtime.ZOO / "agilo" / "goToPose", tmp_path / "agilo" / "goToPose")
     card = folder / "duration.card.json"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -22,6 +21,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
+from tailor.tools.learning.card_lines import card_lines
 
 EPILOG = """\
 examples:
@@ -186,27 +186,8 @@ def _show(card: Card, as_json: bool) -> None:
         return
     console = Console(highlight=False)
     console.rule(f"{card['robot']}/{card['action']}/{card['kind']}")
-    for key, value in card.items():
-        if key == "golden":
-            console.print(f"[bold]golden[/bold]: {len(value['arguments'])} inputs and outputs")
-        elif key == "arguments":
-            ranges = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in value)
-            console.print(f"[bold]arguments[/bold]: {ranges}")
-        else:
-            console.print(f"[bold]{key}[/bold]: {escape(_brief(value))}")
-
-
-def _brief(value: Any, levels: int = 10) -> str:
-    """A value in words; what is nested deeper than that many levels is left out."""
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    if isinstance(value, dict | list) and not levels:
-        return "..."
-    if isinstance(value, dict):
-        return ", ".join(f"{key} {_brief(item, levels - 1)}" for key, item in value.items())
-    if isinstance(value, list):
-        return "[" + ", ".join(_brief(item, levels - 1) for item in value) + "]"
-    return str(value)
+    for key, text in card_lines(card):
+        console.print(f"[bold]{key}[/bold]: {escape(text)}")
 
 
 def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) -> int:

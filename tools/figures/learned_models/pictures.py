@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+import numpy.typing as npt
 
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.episodes import UNOBSERVED, Episode, read_data_set
@@ -22,6 +23,7 @@ from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
 Model = OnnxDuration | OnnxSuccess
+Array = npt.NDArray[np.float64]
 AREA = 300.0  # of the largest marker, in square points
 
 
@@ -71,18 +73,25 @@ def _save(path: Path, title: str, fill: Callable[[Any], None]) -> Path:
 def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> None:
     predicted, spread = model.predict(rows.arguments)
     axes, right = figure.subplots(1, 2)
-    limit = 1.05 * float(np.quantile(rows.targets, 0.995))
+    limit = axis_end(rows.targets)
     axes.scatter(predicted, rows.targets, s=5, alpha=0.4)
     axes.plot([0, limit], [0, limit], color="black", lw=1)
     unit = UNITS[model.card["kind"]]
     axes.set(xlabel=f"predicted [{unit}]", ylabel=f"observed [{unit}]", xlim=(0, limit), ylim=(0, limit))
     axes.set_title("first ticks of the episodes it was fitted to", fontsize="medium")
-    right.scatter(spread, np.abs(predicted - rows.targets), s=5, alpha=0.4)
-    top = 1.05 * float(np.quantile(spread, 0.995))
-    right.plot([0, top], [0, top], color="black", lw=1)
-    right.set(xlabel=f"spread [{unit}]", ylabel=f"|error| [{unit}]", xlim=(0, top), ylim=(0, 4 * top))
+    errors = np.abs(predicted - rows.targets)
+    right.scatter(spread, errors, s=5, alpha=0.4)
+    widest, largest = axis_end(spread), axis_end(errors)
+    right.plot([0, widest], [0, widest], color="black", lw=1, label="as large as the spread")
+    right.set(xlabel=f"spread [{unit}]", ylabel=f"|error| [{unit}]", xlim=(0, widest), ylim=(0, largest))
     right.set_title("is it sure when right?", fontsize="medium")
     right.xaxis.set_major_locator(MaxNLocator(5))
+    right.legend(loc="upper right", fontsize="small")
+
+
+def axis_end(values: Array) -> float:
+    """End of an axis from 0 that shows all these values, shape (n,), but the largest of two hundred."""
+    return 1.05 * float(np.quantile(values, 0.995))
 
 
 def _learning_curve(figure: Any, card: Card) -> None:

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tailor.models.episodes.examples import Examples
 from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import load_model
-from tailor.tools.figures.learned_models.pictures import flat_from
+from tailor.tools.figures.learned_models.pictures import _predicted_observed, flat_from, plt
 from tailor.tools.figures.learned_models.regions import JOINTS, POSES, region_of, swept
 from tailor.tools.main import main
 
@@ -23,6 +24,26 @@ from tailor.tools.main import main
 )
 def test_a_learning_curve_is_flat_from_where_no_error_leaves_the_last_one_s_interval(curve, high, flat) -> None:
     assert flat_from(curve, high) == flat
+
+
+class Unsure:
+    """Predicts 3 s, and a spread far beyond its errors."""
+
+    card = {"kind": "duration"}
+
+    def predict(self, arguments):
+        return np.full(len(arguments), 3.0), np.full(len(arguments), 2.0)
+
+
+def test_errors_fill_the_height_of_their_axis() -> None:
+    errors_s = np.linspace(0.0, 0.1, 50)
+    rows = Examples(np.zeros((50, 8)), 3.0 + errors_s, np.arange(50))
+    figure = plt.figure()
+    _predicted_observed(figure, Unsure(), rows)
+    low, high = figure.axes[1].get_ylim()
+    plt.close(figure)
+    assert low == 0.0
+    assert errors_s.max() < high < 1.2 * errors_s.max()
 
 
 @pytest.mark.parametrize("region", [POSES, JOINTS])
