@@ -27,7 +27,8 @@ from tailor.tools.evaluations.pages.report import Report, configure_report, publ
 from tailor.tools.evaluations.paired_comparison import compare, mean_interval
 from tailor.tools.evaluations.task_runs import paired, run_all
 from tailor.tools.learning.fresh_seeds import DIGITS
-from tailor.tools.learning.making import CHOOSING, Making, make
+from tailor.tools.learning.making.making import CHOOSING, Making
+from tailor.tools.learning.making.steps import make
 from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
 from tailor.tools.parallel.steps import show
 

@@ -14,7 +14,8 @@ from scipy import stats
 from tailor.executive import domains
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
-from tailor.tools.learning.making import CHOOSING, Making, make
+from tailor.tools.learning.making.making import CHOOSING, Making
+from tailor.tools.learning.making.steps import make
 from tailor.tools.learning.recipe import Round, read_recipe, recipe_path
 from tailor.tools.parallel.steps import show
 

@@ -7,9 +7,12 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
-from tailor.tools.learning import making as making_module
-from tailor.tools.learning.gathering import choosing_models, manifests
-from tailor.tools.learning.making import Making, check, install, make
+from tailor.tools.learning.gathering import choosing_models, manifests, policy_runs, random_episodes
+from tailor.tools.learning.making import installing, steps, training
+from tailor.tools.learning.making import making as making_module
+from tailor.tools.learning.making.installing import install
+from tailor.tools.learning.making.making import Making
+from tailor.tools.learning.making.steps import check, make
 from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
@@ -28,12 +31,12 @@ def trained(monkeypatch) -> list:
         folder.mkdir(parents=True)
         (folder / "duration.card.json").write_text(f"of {len(request.data)}")
 
-    monkeypatch.setattr(making_module, "_train", train)
-    monkeypatch.setattr(making_module, "check_complete", lambda _: None)
+    monkeypatch.setattr(training, "_train", train)
+    monkeypatch.setattr(steps, "check_complete", lambda _: None)
     monkeypatch.setattr(choosing_models, "models_hash", lambda *_: "models")
     monkeypatch.setattr(manifests, "RANGE_DRAWS", 64)
-    monkeypatch.setattr(making_module.policy_runs, "_run", lambda *_: [])
-    monkeypatch.setattr(making_module.random_episodes, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
+    monkeypatch.setattr(policy_runs, "_run", lambda *_: [])
+    monkeypatch.setattr(random_episodes, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))
     return requests
 
 
@@ -53,9 +56,9 @@ def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypat
         (tmp_path / action).mkdir()
         (tmp_path / action / "manifest.json").touch()
     requests: list[TrainingRequest] = []
-    monkeypatch.setattr(making_module, "train_models", requests.append)
+    monkeypatch.setattr(training, "train_models", requests.append)
     whole = TrainingRequest("agilo", tmp_path, data=(tmp_path,), kinds=("duration", "success"))
-    making_module._train(whole, 1)
+    training._train(whole, 1)
     each = [(request.actions, request.kinds) for request in requests]
     assert each == [((a,), (k,)) for k in ("duration", "success") for a in ("goToPose", "reach")]
     assert {replace(request, actions=(), kinds=whole.kinds) for request in requests} == {whole}
@@ -64,23 +67,21 @@ def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypat
 def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_others(tmp_path: Path) -> None:
     making = Making("powercube", Recipe(40), tmp_path, 1, "make")
     with pytest.raises(UsageError, match="reach needs reach/duration, which 40 random episodes do not suffice"):
-        making_module.check_complete(making)
+        installing.check_complete(making)
     (making.zoo / "powercube" / "reach").mkdir(parents=True)
     (making.zoo / "powercube" / "reach" / "duration.onnx").touch()
-    making_module.check_complete(making)
+    installing.check_complete(making)
 
 
 def test_a_recipe_may_name_a_profile_of_the_body(tmp_path: Path, trained: list, monkeypatch) -> None:
     drawn = []
-    prepare = making_module.random_episodes.prepare
+    prepare = random_episodes.prepare
     monkeypatch.setattr(
-        making_module.random_episodes,
+        random_episodes,
         "prepare",
         lambda spec, resume: (drawn.append(spec.profile), prepare(spec, resume)),
     )
-    monkeypatch.setattr(
-        making_module.policy_runs, "run_policy", lambda policy, _: drawn.append(policy.profile) or iter((1,))
-    )
+    monkeypatch.setattr(policy_runs, "run_policy", lambda policy, _: drawn.append(policy.profile) or iter((1,)))
     usual, degraded = (Making("agilo", replace(TINY, profile=name), tmp_path, 1, "make") for name in ("", "degraded"))
     list(make(degraded))
     assert set(drawn) == {"degraded"}

@@ -1,0 +1,57 @@
+"""Gathers the episodes of a recipe: random ones, then rounds that the models trained so far choose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from tailor.executive import domains
+from tailor.tools.learning.gathering import policy_runs, random_episodes, run_data_sets
+from tailor.tools.learning.gathering.active_episodes import Active, run_active
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.making.making import Making
+from tailor.tools.learning.recipe import Round
+from tailor.tools.parallel.steps import Step, counted
+
+
+def gather_random(making: Making) -> Iterator[Step]:
+    """Gather the random episodes that are missing; yields progress."""
+    recipe = making.recipe
+    for action, count, folder, beside in _random_sets(making):
+        objects = recipe.objects if beside else 0
+        drawn = (making.domain, action, count, recipe.seed, folder / action)
+        spec = DataSetSpec(*drawn, beside=beside, objects=objects, profile=recipe.profile)
+        random_episodes.prepare(spec, resume=True)
+        missing = random_episodes.missing_parts(spec)
+        left = sum(min(random_episodes.PART, count - first) for first in missing)
+        running = (done for done, *_ in random_episodes.gather(spec, missing, making.jobs))
+        title = f"{action}: random episodes" + (" beside an object" if beside else "")
+        yield from counted(title, running, count, count - left)
+
+
+def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
+    """Gather round `number`, from 0, of episodes that the models in a zoo choose; yields progress."""
+    seed, title = making.recipe.seed + number, f"round {number + 1}"
+    where = (seed, str(zoo), making.data[number + 1], making.recipe.profile)
+    if each.source == "active":
+        active = Active(making.domain, each.scenarios, each.episodes, each.pool, *where)
+        for step in run_active(active, making.jobs):
+            yield Step(f"{title}: {step.title}", step.done, step.total)
+        return
+    policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where)
+    running = policy_runs.run_policy(policy, making.jobs)
+    yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
+
+
+def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
+    """Data sets of random episodes: action, number, folder, and whether each is beside an object."""
+    recipe, declared = making.recipe, domains.load(making.domain).actions
+    actions = run_data_sets.modelled_actions(making.domain)
+    wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
+    if recipe.beside:
+        contexts = {action: declared[action].context for action in actions}
+        near = [
+            action for action, context in contexts.items() if context and context.success_model.startswith(f"{action}/")
+        ]
+        wanted += [(action, recipe.beside, making.beside, True) for action in near]
+    return wanted

@@ -1,0 +1,48 @@
+"""Makes the models of a robot from seeds: random episodes, then rounds that the models trained so far choose.
+
+Equal source, libraries, recipe and platform give equal models, bit for bit. Every step is resumed where it stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from tailor.executive import domains
+from tailor.tools.learning.gathering import data_set_spec, run_data_sets
+from tailor.tools.learning.making.episodes import gather_random, gather_round
+from tailor.tools.learning.making.installing import check_complete
+from tailor.tools.learning.making.making import CHOOSING, Making
+from tailor.tools.learning.making.training import train_all, training_request
+from tailor.tools.learning.recipe_checks import check_recipe
+from tailor.tools.learning.training_request import feature_spaces
+from tailor.tools.learning.training_run import checked
+from tailor.tools.parallel.steps import Step
+
+
+def check(making: Making) -> None:
+    """Check all names in the recipe, before anything is gathered.
+
+    Raises:
+      UsageError: An unknown scenario, action, profile, learner or feature space, or one that does not fit the actions.
+    """
+    check_recipe(making.robot, making.recipe)
+    request, domain = checked(training_request(making, making.zoo)), domains.load(making.domain)
+    for action in run_data_sets.modelled_actions(making.domain):
+        feature_spaces(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
+
+
+def make(making: Making) -> Iterator[Step]:
+    """Gather and train all that is missing; yields progress. The models are in `making.zoo` at the end.
+
+    Raises:
+      UsageError: See `check`; or too few episodes, or a model that an action names and that could not be learned.
+    """
+    check(making)
+    yield from gather_random(making)
+    for number, each in enumerate(making.recipe.rounds):
+        zoo = making.chooser(number)
+        yield from train_all(making, zoo, making.data[: number + 1], CHOOSING)
+        yield from gather_round(making, number, each, zoo)
+    yield from train_all(making, making.zoo, making.data, making.kinds or making.recipe.training.kinds)
+    check_complete(making)

@@ -1,0 +1,67 @@
+"""Trains the models of a recipe on the episodes of all its steps so far."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from tailor.models.cards.card import KINDS
+from tailor.models.episodes.manifest import MANIFEST
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning.making.making import Making
+from tailor.tools.learning.training_request import (
+    DEFAULT_CLEARANCE_LEARNER,
+    DEFAULT_FAILURE_LEARNER,
+    DEFAULT_LEARNER,
+    TrainingRequest,
+    data_sets,
+)
+from tailor.tools.learning.training_run import train_models
+from tailor.tools.parallel.pool import Processes
+from tailor.tools.parallel.steps import Step
+
+WHOLE = "whole"  # marker of a folder of models, written last
+
+
+def train_all(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...]) -> Iterator[Step]:
+    """Train into a zoo as `tailor train` does, unless that has been done; yields progress."""
+    title = f"training {zoo.name}"
+    if not (zoo / WHOLE).exists():
+        yield Step(title, 0, 1)
+        near = [making.beside] if making.recipe.beside else []
+        present = tuple(folder for folder in (*data, *near) if any(folder.glob(f"*/{MANIFEST}")))
+        if not present:
+            raise UsageError(f"{making.work}: no episodes to train on")
+        _train(training_request(making, zoo, present, kinds), making.jobs)
+        (zoo / WHOLE).touch()
+    yield Step(title, 1, 1)
+
+
+def _train(request: TrainingRequest, jobs: int) -> None:
+    """Train each model in a process of its own: equal bits for any number of jobs."""
+    each = [
+        dataclasses.replace(request, actions=(action,), kinds=(kind,))
+        for kind in request.kinds or KINDS
+        for action in data_sets(request)
+    ]
+    for _ in Processes().completed(train_models, [(one,) for one in each], jobs):
+        pass
+
+
+def training_request(
+    making: Making, zoo: Path, data: tuple[Path, ...] = (), kinds: tuple[str, ...] = ()
+) -> TrainingRequest:
+    """What a recipe asks of the training: learners, feature spaces, seed."""
+    options = making.recipe.training
+    named: dict[str, Any] = {
+        "features": options.features or None,
+        "energy_features": options.energy_features or None,
+        "learner": options.learner or DEFAULT_LEARNER,
+        "failure_learner": options.failure_learner or DEFAULT_FAILURE_LEARNER,
+        "clearance_learner": options.clearance_learner or DEFAULT_CLEARANCE_LEARNER,
+    }
+    return TrainingRequest(
+        making.robot, zoo, data=data, seed=options.seed, command=making.command, kinds=kinds, **named
+    )
