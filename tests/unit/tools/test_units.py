@@ -54,6 +54,21 @@ def test_there_is_a_unit_for_every_part_and_a_target(all_units):
     ]
 
 
+def test_a_user_whom_systemd_would_not_find_is_refused_and_on_another_machine_reported(tmp_path, capsys, monkeypatch):
+    words = ["units", str(tmp_path / "system"), "--user", "no-such-robot"]
+    assert main(words) == 0
+    reported = capsys.readouterr()
+    assert (
+        reported.err
+        == "--user no-such-robot: no such user on this machine; expected on the one that runs these services\n"
+    )
+    monkeypatch.setattr(units, "SYSTEMD", (str(tmp_path),))
+    assert main([*words, "--force"]) == 2
+    refused = capsys.readouterr()
+    assert "--user no-such-robot: no such user on this machine, expected one that exists" in refused.err
+    assert refused.out == ""
+
+
 @pytest.mark.parametrize("part", SERVICES)
 def test_each_command_parses_with_the_commands_own_parser(all_units, part):
     interpreter, isolated, flag, module, name, *arguments = command_of(all_units[f"tailor-{part}"])

@@ -8,8 +8,10 @@ from __future__ import annotations
 import argparse
 import getpass
 import os
+import pwd
 import re
 import shlex
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,6 +26,7 @@ from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
 from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files
 
+SYSTEMD = ("/etc/systemd", "/run/systemd", "/usr/lib/systemd", "/usr/local/lib/systemd")  # units that this machine runs
 USER = re.compile(r"[a-z_][a-z0-9_-]{0,30}\$?")
 
 
@@ -70,7 +73,7 @@ def _config(arguments: argparse.Namespace) -> UnitsConfig:
     return UnitsConfig(
         domain=arguments.domain,
         robot=domain.robot,
-        user=_user(arguments.user),
+        user=_user(arguments.user, arguments.folder),
         bus=_bus(arguments, parts),
         parts=parts,
         deployment_file=_absolute(arguments.config) if arguments.config else "",
@@ -101,12 +104,20 @@ def _folder(path: str) -> str:
     return _absolute(path)
 
 
-def _user(name: str) -> str:
+def _user(name: str, folder: Path) -> str:
+    """The services' user; one that does not exist here may exist on the machine that the files are made for."""
     user = name or getpass.getuser()
     if user == "root" and not name:
         raise UsageError("--user is missing, expected the user of the services; they need no root")
     if not USER.fullmatch(user):
         raise UsageError(f"--user {user}: expected a user name")
+    try:
+        pwd.getpwnam(user)
+    except KeyError:
+        missing = f"--user {user}: no such user on this machine"
+        if any(folder.resolve().is_relative_to(each) for each in SYSTEMD):
+            raise UsageError(f"{missing}, expected one that exists (useradd --system {user})") from None
+        print(f"{missing}; expected on the one that runs these services", file=sys.stderr)
     return user
 
 
