@@ -22,6 +22,7 @@ FORGET_S = 60.0  # a silent executive that another one has replaced
 class _Record:
     status: ExecStatus | None = None
     at_ns: int = 0
+    introduced: bool = False  # its provenance has been received
     ticks: TickTimer = field(default_factory=TickTimer)
     realtime: dict[str, str] = field(default_factory=dict)
     required: dict[str, float] = field(default_factory=dict)
@@ -54,7 +55,13 @@ class Executives:
         """Take granted privileges and required topics; foreign content leaves them empty."""
         table, record = table_of(provenance.json), self._record(sender)
         table = {} if isinstance(table, Rejected) else table
+        record.introduced = True
         record.realtime, record.required = _realtime(table), _required(table)
+
+    def unknown(self, now_ns: int) -> bool:
+        """Whether there is a live executive whose provenance has not been received yet."""
+        live = (each for each in self._records.values() if each.status is not None and not _silent(each, now_ns))
+        return not all(each.introduced for each in live)
 
     def views(self, now_ns: int) -> tuple[ExecutiveView, ...]:
         """All executives with a status, the most recent one first; long gone ones only if there is no other."""

@@ -56,7 +56,7 @@ def panel(picture: Picture, endpoint: str) -> RenderableType:
 def _verdict(picture: Picture, endpoint: str) -> Text:
     count = len(picture.problems)
     text = Text("healthy", GOOD) if picture.healthy else Text(f"{count} problem{'s'[: count != 1]}", BAD)
-    return text.append(f"   {endpoint}, observed for {picture.observed_s:.0f} s", WEAK)
+    return text.append(f"   {endpoint}, observed for {_rounded(picture.observed_s)} s", WEAK)
 
 
 def _problem(finding: Finding) -> Text:
@@ -93,10 +93,14 @@ def _task(executive: ExecutiveView) -> str:
 
 
 def _ticks(ticks: TickTimes, observed_s: float) -> Text:
-    span = "minute" if observed_s >= WINDOW_NS / 1e9 else f"{observed_s:.0f} s"
+    span = "minute" if observed_s >= WINDOW_NS / 1e9 else f"{_rounded(observed_s)} s"
     text = Text(f"{ticks.reported} in the last {span}, ")
     text.append(f"{ticks.skipped} skipped", BAD if ticks.skipped else "default")
     return text.append(f"; work {_spread(ticks.work_ms)}, late {_spread(ticks.lateness_ms)} ms")
+
+
+def _rounded(seconds: float) -> str:
+    return f"{round(seconds, 1 if seconds < 10.0 else 0):g}"
 
 
 def _spread(spread: Spread) -> str:

@@ -55,6 +55,10 @@ class SystemModel:
             self._arrivals.setdefault(raw.key, Arrivals()).add(now_ns, received.origin.sender)
             self._update(received, now_ns)
 
+    def incomplete(self, now_ns: int) -> bool:
+        """Whether it is unknown what a live executive requires and was granted; it publishes that once a second."""
+        return self._executives.unknown(now_ns)
+
     def picture(self, now_ns: int) -> Picture:
         """State of the system at `now_ns`."""
         executives = self._executives.views(now_ns)

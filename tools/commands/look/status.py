@@ -33,6 +33,7 @@ from tailor.tools.status.watcher import Watcher
 
 OBSERVE_S = 1.5  # every periodic topic comes at least once, state and odometry more often
 MIN_S, MAX_S = 0.2, 3600.0
+COMPLETE_S = 1.2  # by then an executive has published what it requires, which it does once a second
 NICENESS = 10  # the executive has priority over the observer
 DRAIN_S = 0.05
 KEY_S = 0.02  # from a key to the e-stop, at most
@@ -79,8 +80,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -> Picture:
-    ends = time.monotonic() + seconds
-    while time.monotonic() < ends and not stop.requested:
+    """The state after some seconds; after `COMPLETE_S` where less left it open what is required."""
+    began_s = time.monotonic()
+    while not stop.requested:
+        elapsed_s = time.monotonic() - began_s
+        if elapsed_s >= seconds and not (elapsed_s < COMPLETE_S and model.incomplete(time.monotonic_ns())):
+            break
         time.sleep(DRAIN_S)
         watcher.poll(time.monotonic_ns())
     return model.picture(time.monotonic_ns())

@@ -243,3 +243,12 @@ def test_privileges_come_from_the_provenance_and_foreign_content_leaves_them_emp
         assert feed.picture().executives[0].realtime == {}
     feed.put("provenance", m.Provenance(0, '{"realtime": {"scheduler": "fifo 50"}}'), EXECUTIVE)
     assert feed.picture().executives[0].realtime == {"scheduler": "fifo 50"}
+
+
+def test_a_view_is_incomplete_until_a_live_executive_has_published_what_it_requires():
+    feed = Feed()
+    assert not feed.model.incomplete(round(feed.now_s * 1e9)), "nobody is there"
+    feed.run(0.3)
+    assert feed.model.incomplete(round(feed.now_s * 1e9))
+    feed.put("provenance", m.Provenance(0, "{}"), EXECUTIVE)
+    assert not feed.model.incomplete(round(feed.now_s * 1e9))
