@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from tailor.schemas.errors import Rejected, UsageError
 
 T = TypeVar("T")
+MAX_ERROR = 90  # characters: a received text may be quoted in it
 
 
 def read_toml(path: Path | str, expected: str) -> dict[str, Any]:
@@ -52,10 +53,10 @@ def json_value(text: str) -> Any:
 def table_of(text: str) -> dict[str, Any] | Rejected:
     """The JSON object in a received text; a Rejected for any other text, including endless nesting."""
     try:
-        value = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        return Rejected(f"no JSON: {str(error)[:80]}")
-    return value if isinstance(value, dict) else Rejected("no JSON object")
+        value = json_value(text)
+    except ValueError as error:
+        return Rejected(str(error)[:MAX_ERROR])
+    return value if isinstance(value, dict) else Rejected("not a JSON object")
 
 
 def shown(value: Any) -> str:

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from tailor.schemas.errors import UsageError
-from tailor.schemas.parsed_files import read_json, read_toml
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.parsed_files import read_json, read_toml, table_of
 
 
 @pytest.mark.parametrize(
@@ -46,3 +46,23 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
 def test_files_are_utf_8_in_every_locale(tmp_path: Path, read: Callable[..., Any], text: str) -> None:
     (tmp_path / "file").write_text(text, encoding="utf-8")
     assert read(tmp_path / "file", "a file") == {"name": "Bürste"}
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{", "not JSON: Expecting"),
+        ("[" * 9000, "nested too deeply"),
+        ("[1]", "not a JSON object"),
+        ("1" * 9000, "not JSON"),
+    ],
+)
+def test_a_received_text_that_is_no_table_is_rejected_in_few_words(text: str, reason: str) -> None:
+    rejected = table_of(text)
+    assert isinstance(rejected, Rejected)
+    assert reason in rejected.reason
+    assert len(rejected.reason) <= 90
+
+
+def test_a_received_table_is_read() -> None:
+    assert table_of('{"domain": "soccer"}') == {"domain": "soccer"}
