@@ -123,6 +123,14 @@ def test_an_endpoint_for_people_alone_takes_no_other_key(bus):
         process.stop()
 
 
+def test_an_estop_with_a_key_of_another_role_names_the_role_that_it_takes(bus):
+    folder, _, remote = bus
+    line = tailor("estop", "--connect", remote, "--key", str(folder / "driving"))
+    done = subprocess.run(line, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr == f"{folder / 'driving'}: a key stops drivers only if its role is people (tailor keys list)\n"
+
+
 WRONG = {
     "no name": (("new",), "name ''"),
     "no role": (("new", "x"), "--role"),

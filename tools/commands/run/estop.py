@@ -7,10 +7,11 @@ it ends. Any key, Ctrl-C or closing the terminal ends it.
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Mapping
 
 from tailor.schemas.messages import DriverState
-from tailor.tools.cli.endpoint import configure_bus, open_bus
+from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 
@@ -33,7 +34,12 @@ def run(arguments: argparse.Namespace) -> int:
         finally:  # whatever ended it
             states = button.press()
     print(_json(states) if arguments.json else summary(states))
-    return 0 if all_stopped(states) else 1
+    if all_stopped(states):
+        return 0
+    key = bus_settings(arguments).key
+    if key:  # another role is not told that nobody heard it
+        print(f"{key}: a key stops drivers only if its role is people (tailor keys list)", file=sys.stderr)
+    return 1
 
 
 def _json(states: Mapping[str, DriverState]) -> str:
