@@ -55,8 +55,8 @@ def panel(picture: Picture, endpoint: str) -> RenderableType:
 
 def _verdict(picture: Picture, endpoint: str) -> Text:
     count = len(picture.problems)
-    text = Text("healthy", GOOD) if picture.healthy else Text(f"{count} problem{'s'[: count != 1]}", BAD)
-    return text.append(f"   {endpoint}, observed for {_rounded(picture.observed_s)} s", WEAK)
+    verdict = ("healthy", GOOD) if picture.healthy else (f"{count} problem{'s'[: count != 1]}", BAD)
+    return Text.assemble(verdict).append(f"   {endpoint}, observed for {_rounded(picture.observed_s)} s", WEAK)
 
 
 def _problem(finding: Finding) -> Text:
