@@ -16,9 +16,10 @@ from configuration_page import configuration_page
 ROOT = Path(__file__).parents[2]
 OF_ROOT = ("CONTRIBUTING.md", "SAFETY.md", "CHANGELOG.md")
 INTO_SOURCE = re.compile(
-    r"\[([^\]]+)\]\((?!https?:|#|mailto:)((?:\.\./)*(?:examples|tests|tools|executive|README)[^)]*)\)"
+    r"\[([^\]]+)\]\((?!https?:|#|mailto:)((?:\.\./)*(?:examples|tests|tools|executive|ros2|README)[^)]*)\)"
 )
 FETCHED = re.compile(r'<script src="https://[^"]*"></script>')
+DIAGRAM = re.compile(r"```mermaid\n.*?```\n", re.DOTALL)  # GitHub draws it; the site would have to fetch a script
 UP = re.compile(r"\]\((?:\.\./)+(CONTRIBUTING|SAFETY|CHANGELOG)\.md")
 
 
@@ -35,6 +36,7 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Links between the root and docs/ fit the site; those into the source become plain text."""
     if page.file.src_uri in OF_ROOT:
         markdown = markdown.replace("](docs/", "](")
+    markdown = DIAGRAM.sub("", markdown)
     depth = "../" * page.file.src_uri.count("/")
     return UP.sub(rf"]({depth}\1.md", INTO_SOURCE.sub(r"\1", markdown))
 

@@ -21,8 +21,8 @@ class Deployment:
     bus: BusSettings = field(default_factory=BusSettings)
     executive: Settings = field(default_factory=Settings)
     planner: PlannerCommand = field(default_factory=PlannerCommand)
-    scenario: str = ""
-    zoo: str = ""
+    scenario: str = ""  # of the domain; default: its first
+    zoo: str = ""  # folder of action models; default: those of the robot's package
 
 
 def read_deployment(path: str) -> Deployment:

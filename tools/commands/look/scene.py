@@ -30,8 +30,8 @@ examples:
   tailor scene --live                            (beside a robot of your own, on the bus)
   tailor scene --layout soccer -o soccer.json    (Foxglove: Layouts, Import from file)
 
-rerun reads the transforms of a recording by itself, and the markers by examples/rerun/show_in_rerun.py:
-  python show_in_rerun.py run.mcap run.rrd && rerun run.rrd"""
+rerun reads the transforms of a recording by itself, and the markers by a script of ours:
+  python examples/rerun/show_in_rerun.py run.mcap run.rrd && rerun run.rrd"""
 NICENESS = 10  # the executive has priority
 
 
