@@ -18,6 +18,7 @@ from tailor.simnodes.driver_spec import DriverSpec
 PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors
 PATIENCE_S = 6.0  # for the robot to come to rest
+FRESH_S = 1.0  # ten periods of the driver's state: an older one is that of a driver which has ended
 
 
 class NotPossible(Exception):
@@ -93,10 +94,10 @@ class Bench:
         """The driver's newest state.
 
         Raises:
-          NotPossible: There is none within a second.
+          NotPossible: There is none of the last second, nor within another one.
         """
         for _ in range(10):
-            for each in reversed(self.log):
+            for each in reversed(self.heard("driver", self.link.now_s() - FRESH_S)):
                 if isinstance(each.message, DriverState):
                     return each.message
             self.wait(PERIOD_S)

@@ -52,7 +52,10 @@ def responses(bench: Bench, fraction: float) -> list[Response]:
     """
     found = []
     bench.begin()
-    for index, _ in list(bench.tests()):
+    axes = list(bench.tests())
+    if not axes:
+        raise NotPossible("no sensor shows the speed of an axis")
+    for index, _ in axes:
         axis, limit = bench.domain.axes[index], bench.spec.limits[index]
         step = fraction * min(abs(limit.lower), abs(limit.upper))
         command = [step if each == index else rest for each, rest in enumerate(bench.rest)]

@@ -83,6 +83,30 @@ def test_a_robot_that_does_not_move_is_no_misfit_but_not_possible():
         responses(Bench(link, DOMAIN, SPEC, fraction=0.2), 0.3)
 
 
+class Ending:
+    """A link to a driver that has ended: nothing more is heard of it."""
+
+    def __init__(self, link):
+        self.link, self.ended = link, False
+
+    def __getattr__(self, name):
+        return getattr(self.link, name)
+
+    def wait(self, seconds):
+        heard = self.link.wait(seconds)
+        return [] if self.ended else heard
+
+
+def test_a_driver_that_has_ended_is_no_misfit_but_not_possible():
+    link = Ending(SimulatedLink(World(Ramped(), {}, 0), SPEC))
+    bench = Bench(link, DOMAIN, SPEC, fraction=0.2)
+    bench.wait(1.0)
+    link.ended = True
+    bench.wait(2.0)
+    with pytest.raises(NotPossible, match="it publishes no state"):
+        responses(bench, 0.3)
+
+
 def test_a_misfit_comes_with_the_command_that_gathers_anew():
     response = Response("v", "m/s", 0.27, 0.1, 0.5, 0.27)
     report = Report("agilo", "hardware", [], [response], [response], ["v accelerates with 1"])
