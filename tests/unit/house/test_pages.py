@@ -26,6 +26,7 @@ COMMANDS_BY_GROUP = [name for group in GROUPS for name in COMMANDS if group in C
 GENERATED = {"commands.md", "configuration.md"}  # by docs/site/hooks.py
 TOPS = "|".join(sorted(OURS | {"tests", "docs", "examples"}))
 PATH = re.compile(rf"`((?:{TOPS}|core|planning|refinement)/[\w./-]*)`")
+TABLE = re.compile(r"`([A-Z][A-Z_]{4,})` in `")
 LINK = re.compile(r"\]\((?!http|#)([^)#]+)")
 COMMAND = re.compile(r"(?:^|\$ |`)tailor ([a-z][a-z-]*)", re.MULTILINE)
 
@@ -44,6 +45,14 @@ def test_a_page_names_files_that_exist(page: str) -> None:
     assert {path for path in PATH.findall(text) if not exists(path)} == set()
     folder = (ROOT / page).parent
     assert {link for link in LINK.findall(text) if not known(folder / link)} == set()
+
+
+@pytest.mark.parametrize("page", PAGES + REFERENCE + GUIDE)
+def test_a_table_that_a_page_names_beside_a_file_is_in_that_file(page: str) -> None:
+    for line in (ROOT / page).read_text().splitlines():
+        files = [path for path in PATH.findall(line) if path.endswith(".py") and (ROOT / path).exists()]
+        source = "".join((ROOT / path).read_text() for path in files)
+        assert not files or {name for name in TABLE.findall(line) if name not in source} == set(), line
 
 
 @pytest.mark.parametrize("page", PAGES + REFERENCE + GUIDE)

@@ -45,7 +45,7 @@ def compared(title: str, driven: Callable[[int, Costs], Run], count: int, first:
     """Runs with plans by steps and by models from so many starts; times are means over pairs that both achieve."""
     seeds = range(first, first + count)
     runs = {costs: [driven(seed, costs) for seed in seeds] for costs in get_args(Costs)}
-    table = Table(title=f"{title}, {count} starts", box=None)
+    table = Table(title=f"{title}, {count} start{'s'[: count != 1]}", box=None)
     for column in ("plans by", "achieved", "first action after", "mean duration", "saved", "faster", "slower"):
         table.add_column(column, justify="left" if column == "plans by" else "right")
     both = [n for n in range(count) if all(rows[n].achieved for rows in runs.values())]
