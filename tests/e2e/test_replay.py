@@ -31,7 +31,7 @@ def recorded(path, ticks, mode="armed"):
     script.say(0, "agilo/arm_request", ArmRequest(True, False, "", 0))
     for tick in range(ticks):
         script.say(tick * 100, "agilo/odom", Odometry(0, tick / 10, 0.0, 0.0, 0.0, 0.0), DRIVER)
-        armed = replace(example(DriverState), mode=mode, armed_sender=EXECUTIVE)
+        armed = replace(example(DriverState), mode=mode, armed_sender=EXECUTIVE, command_stamp_ns=1 + tick)
         script.say(tick * 100, "agilo/driver", armed, DRIVER)
         script.say(tick * 100, "agilo/cmd_vel", VelocityCommand(0, 0.5, 0.0))
     return script.close()
@@ -188,6 +188,7 @@ def test_a_substitute_executive_receives_the_sensors_and_a_driver_that_obeys_it(
             thread.join()
         states = [s.message for s in driver() if isinstance(s.message, DriverState)]
         assert {state.armed_sender for state in states} == {live.sender}
+        assert {state.command_stamp_ns for state in states} == {0}, "a recorded echo is minutes old to a live executive"
         assert any(isinstance(s.message, Odometry) for s in driver())
         assert commands() == []
 

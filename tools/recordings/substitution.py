@@ -35,10 +35,13 @@ def live_executive(session: Session) -> str:
 
 
 def armed_for(sender: str, recorded: Recorded) -> Recorded:
-    """The message for the live executive `sender`: a driver that obeyed the recorded one appears to obey it."""
+    """The message for the live executive `sender`: a driver that obeyed the recorded one appears to obey it.
+
+    It echoes no command: those of the recording have stamps of another clock, and seem minutes old.
+    """
     if type_of(recorded.ros_type) is not DriverState:
         return recorded
     state = decode(DriverState, recorded.data)
     if not isinstance(state, DriverState) or not state.armed_sender:
         return recorded
-    return replace(recorded, data=encode(replace(state, armed_sender=sender)))
+    return replace(recorded, data=encode(replace(state, armed_sender=sender, command_stamp_ns=0)))
