@@ -1,6 +1,7 @@
 """Converts stamps: integer nanoseconds in our messages, `std_msgs/Header` in ROS.
 
 Every stamped message carries a whole header, because viewers plot over `header.stamp` and read the frame from it.
+ROS's seconds have 31 bits. After 2038, or where a clock is set to then by mistake, stamps begin again at 1970.
 """
 
 from __future__ import annotations
@@ -20,14 +21,19 @@ def _classes() -> tuple[Any, Any]:
     return ros_class("std_msgs/msg/Header"), ros_class("builtin_interfaces/msg/Time")
 
 
+def wrapped_ns(stamp_ns: int) -> int:
+    """The stamp that ROS can hold instead of this one: the same unless it is beyond 0 to MAX_STAMP_NS."""
+    return stamp_ns % (MAX_STAMP_NS + 1)
+
+
 def time(stamp_ns: int) -> Any:
-    """A builtin_interfaces/Time; 0 <= stamp_ns <= MAX_STAMP_NS."""
-    seconds, rest = divmod(stamp_ns, NS_PER_S)
+    """A builtin_interfaces/Time of the wrapped stamp."""
+    seconds, rest = divmod(wrapped_ns(stamp_ns), NS_PER_S)
     return _classes()[1](sec=seconds, nanosec=rest)
 
 
 def header(stamp_ns: int, frame: str = "") -> Any:
-    """A ROS header with this stamp; 0 <= stamp_ns <= MAX_STAMP_NS."""
+    """A ROS header with this stamp, wrapped."""
     return _classes()[0](stamp=time(stamp_ns), frame_id=frame)
 
 

@@ -19,6 +19,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
+from tailor.schemas.ros_time import wrapped_ns
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
@@ -55,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     goal = _goal(context, arguments)
     driver_sender = checked_sender(arguments.driver_sender, "--driver-sender")
     with open_bus(arguments, "executive", sender=sender_of(arguments)) as session:
-        offset_ns = wall_ns() - time.monotonic_ns()
+        offset_ns = wrapped_ns(wall_ns()) - time.monotonic_ns()
         context = replace(context, sender=session.sender, stamp_offset_ns=offset_ns, driver_sender=driver_sender)
         codec.prime()
         numpy_blocks.fill()
