@@ -8,7 +8,7 @@ from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.state import State, Task, undecided
+from tailor.executive.core.state import Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Reason
@@ -42,6 +42,19 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     if control.outcome == "running":
         return state, None
     return _done(context, state, running)
+
+
+def interrupted(context: Context, before: Task, state: State, inputs: Inputs) -> ActionFinished | None:
+    """Report of the action of the task `before` this tick's inputs, which ended it; None if it goes on."""
+    if before.running is None or state.task.running is not None:
+        return None
+    if inputs.goal:
+        cause = Cause(Reason.NEW_GOAL)
+    elif inputs.stopping:
+        cause = Cause(Reason.SHUTDOWN)
+    else:
+        cause = Cause(Reason.DISARMED, str(state.cause))
+    return finished_message(context, state, before.finished, before.running, ("aborted", cause))
 
 
 def finished_message(
@@ -109,12 +122,11 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
 
 def _abandoned(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     """Zero command and nothing decided: all decisions were made for the place from which the robot was carried."""
-    running, zero = state.task.running, at_rest(context.domain.axes, state.command)
+    running, index, zero = state.task.running, state.task.finished, at_rest(context.domain.axes, state.command)
     state = replace(undecided(state), command=zero, coasted=context.settings.coast_ticks)
     if running is None:
         return state, None
-    finished = finished_message(context, state, state.task.finished, running, ("failed", Cause(Reason.ROBOT_CARRIED)))
-    return replace(state, task=replace(state.task, finished=state.task.finished + 1)), finished
+    return state, finished_message(context, state, index, running, ("failed", Cause(Reason.ROBOT_CARRIED)))
 
 
 def after_action(task: Task) -> Task:

@@ -105,7 +105,8 @@ class State:
 
 def undecided(state: State) -> State:
     """The state with its goal only: what comes next is planned and decided from where the robot stands then."""
-    task = replace(state.task, running=None, decision=None, plan=None)
+    finished = state.task.finished + (state.task.running is not None)
+    task = replace(state.task, running=None, decision=None, plan=None, finished=finished)
     return replace(state, task=task, deliberation=None, preparation=None)
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive.core import reporting
-from tailor.executive.core.action_cycle import act
+from tailor.executive.core.action_cycle import act, interrupted
 from tailor.executive.core.deliberation_cycle import advance_deliberation, receive_answers
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
@@ -24,7 +24,9 @@ REARM_NS = 500_000_000  # a request without an effect is repeated
 
 def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tuple[State, tuple[Output, ...]]:
     """First half of a tick: belief, mode, running action, command. Always runs; consumes `state`."""
+    before = state.task
     state = perceive(context, state, now_ns, inputs)
+    cut_off = interrupted(context, before, state, inputs)
     receive_answers(context, state, inputs)
     state, finished = act(context, state)
     outputs: list[Output] = []
@@ -34,8 +36,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
         outputs.append(Output("self_arm", request))
-    if finished is not None:
-        outputs.append(Output("finished", finished))
+    outputs.extend(Output("finished", end) for end in (cut_off, finished) if end is not None)
     return state, tuple(outputs)
 
 

@@ -32,6 +32,9 @@ class Reason(StrEnum):
     EFFECTS_HOLD = "effects hold"
     SUPERSEDED = "superseded"
     COURSE_AT_RISK = "course at risk"
+    DISARMED = "disarmed"
+    NEW_GOAL = "new goal"
+    SHUTDOWN = "shutdown"
     PLANNER_FAILED = "planner failed"
     PLAN_UNREADABLE = "plan unreadable"
     PLAN_UNSOUND = "plan unsound"
@@ -76,6 +79,9 @@ REASONS: dict[Reason, Row] = {
     Reason.EFFECTS_HOLD: Row(ACTION, "done: its effects held before its controller ended", ""),
     Reason.SUPERSEDED: Row(ACTION, "aborted: a new decision begins with another action", ""),
     Reason.COURSE_AT_RISK: Row(ACTION, "aborted: failure became likely beside objects; decides anew at rest", ""),
+    Reason.DISARMED: Row(ACTION, "aborted: the driver no longer obeys; it decides anew", "cause of mode DISARMED"),
+    Reason.NEW_GOAL: Row(ACTION, "aborted: another goal was set", ""),
+    Reason.SHUTDOWN: Row(ACTION, "aborted: the executive comes to rest and ends", ""),
     Reason.PLANNER_FAILED: Row(PLAN, "the external planner failed; the search takes over", "outcome, its text"),
     Reason.PLAN_UNREADABLE: Row(PLAN, "the external planner's output is no plan; the search takes over", "first error"),
     Reason.PLAN_UNSOUND: Row(PLAN, "the plan does not reach the goal; the search takes over", "first fault"),
