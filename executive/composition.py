@@ -14,7 +14,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
-from tailor.schemas.topics import TOPICS, is_rate, key_of
+from tailor.schemas.topics import is_rate, key_of
 
 ModelLoader = Callable[[str, str], Models]  # of a robot, from a folder; empty: the shipped one
 PLACE_UNIT = "m"
@@ -102,8 +102,7 @@ def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:
 
 
 def _required(context: Context) -> dict[str, float]:
-    domain, rates_hz = context.domain, context.sensor_rates_hz
-    return {key_of(name, domain.robot): rates_hz.get(name, TOPICS[name].rate_hz) for name in domain.required}
+    return {key_of(name, context.domain.robot): rate_hz for name, rate_hz in context.sensor_rates_hz.items()}
 
 
 def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None) -> Context:
@@ -122,6 +121,7 @@ def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None
     driver_sender, required = str(recorded.get("driver_sender", "")), recorded.get("required", {})  # newer than others
     names = {name: key_of(name, context.domain.robot) for name in context.domain.required}
     rates_hz = {name: float(required[key]) for name, key in names.items() if key in required}
+    rates_hz = {**context.sensor_rates_hz, **rates_hz}
     context = dataclasses.replace(context, driver_sender=driver_sender, sensor_rates_hz=rates_hz)
     here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():

@@ -5,7 +5,7 @@ Message types, codecs, freshness limits, recording policy and documentation deri
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 
 from tailor.schemas import messages as m
@@ -13,7 +13,7 @@ from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.package_topics import PackageTopics, add_topics
 from tailor.schemas.packages.topic import Priority, Source, Topic
 
-__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "is_rate", "key_of", "reports"]
+__all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "is_rate", "key_of", "nominal_rates_hz", "reports"]
 
 STALE_S = 0.5  # Autoware's heartbeat limit; five ticks
 MAX_RATE_HZ = 1e6  # beyond any sensor
@@ -80,6 +80,11 @@ class TopicTable(Mapping[str, Topic]):
 
 
 TOPICS = TopicTable()
+
+
+def nominal_rates_hz(names: Iterable[str]) -> dict[str, float]:
+    """Rates of topics in the table, by name; names that it does not have are left out."""
+    return {name: TOPICS[name].rate_hz for name in names if name in TOPICS}
 
 
 def is_rate(value: object) -> bool:

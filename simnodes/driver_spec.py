@@ -9,6 +9,7 @@ from typing import Any
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of_robot
 from tailor.schemas.parsed_files import toml_table
+from tailor.schemas.topics import TOPICS
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.typed_values import finite_number, table_in, tables_in, text
 
@@ -30,6 +31,11 @@ class SensorSpec:
     topic: str  # name in tailor.schemas.topics
     rate_hz: float  # 0: on change, or of the topic's rate
     frame: str = ""  # in the header of its messages; empty: not declared
+
+    @property
+    def nominal_hz(self) -> float:
+        """The declared rate, or else that of the topic."""
+        return self.rate_hz or TOPICS[self.topic].rate_hz
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ base arrived at full speed.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.domain import Domain
@@ -36,25 +36,23 @@ class Measurements:
 
 
 def without_faulty(
-    known: Measurements, keys: Collection[str], samples: tuple[Sample, ...], fastest: Speeds | None = None
+    known: Measurements, samples: tuple[Sample, ...], fastest: Speeds | None = None
 ) -> tuple[Measurements, tuple[Sample, ...]]:
-    """What is known after `samples`, and the samples without messages under `keys` that are no measurements.
+    """What is known after `samples`, and those that are measurements.
 
     Args:
       known: What was known before them.
-      keys: Keys of the robot's sensors.
-      samples: In order of arrival.
+      samples: Of the robot's sensors, in order of arrival.
       fastest: Speeds that odometry may have; None: any.
     """
     joints, faults, kept = dict(known.joints), dict(known.faults), []
     for sample in samples:
-        if sample.key in keys:
-            faults.pop(sample.key, None)
-            if fault := _fault(sample.message, joints.get(sample.key, ()), fastest):
-                faults[sample.key] = fault
-                continue
-            if isinstance(sample.message, JointState):
-                joints.setdefault(sample.key, sample.message.names)
+        faults.pop(sample.key, None)
+        if fault := _fault(sample.message, joints.get(sample.key, ()), fastest):
+            faults[sample.key] = fault
+            continue
+        if isinstance(sample.message, JointState):
+            joints.setdefault(sample.key, sample.message.names)
         kept.append(sample)
     return Measurements(joints, faults), tuple(kept)
 
@@ -97,4 +95,4 @@ def _joint_fault(state: JointState, joints: tuple[str, ...]) -> str:
 
 
 def _beyond(rows: Iterable[tuple[str, float, float]]) -> str:
-    return next((f"has {name} at {value:g}" for name, value, most in rows if abs(value) > most), "")
+    return next((f"has {name} at {value:g}" for name, value, most in rows if not abs(value) <= most), "")

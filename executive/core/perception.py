@@ -4,50 +4,27 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tailor.executive.core.freshness import (
-    MAX_ROUND_TRIP_NS,
-    echo_age_ns,
-    newest_arrivals,
-    of_known_senders,
-    slow_topics,
-    stale_topics,
-    with_samples,
-)
+from tailor.executive.core.freshness import MAX_ROUND_TRIP_NS, echo_age_ns, is_stale, newest_arrivals, stale_topics
 from tailor.executive.core.measurements import fastest_of, without_faulty
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
+from tailor.executive.core.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.domain import relocations
 from tailor.executive.interfaces.reasons import Cause, Reason
-from tailor.schemas.messages import DriverState
+from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.reason_text import reason_text
-from tailor.schemas.topics import TOPICS, key_of
+from tailor.schemas.topics import key_of
 
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
     """The state with this tick's inputs and the mode that follows from them."""
-    domain = context.domain
-    backward = now_ns < state.now_ns
-    now_ns = max(now_ns, state.now_ns)
-    received = of_known_senders(domain.sensors, domain.robot, state.streams, inputs.samples)
-    sensors = {key_of(topic, domain.robot) for topic in domain.sensors}
-    measurements, samples = without_faulty(state.measurements, sensors, received, fastest_of(domain))
-    readings = tuple(s for s in samples if s.key in sensors)
-    second_ago = now_ns - 1_000_000_000
+    backward, now_ns = now_ns < state.now_ns, max(now_ns, state.now_ns)
+    passed_ns, second_ago = now_ns - state.now_ns, now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
-    belief, passed_ns = domain.update(state.belief, now_ns, readings, state.command), now_ns - state.now_ns
-    state = replace(
-        state,
-        tick=state.tick + 1,
-        now_ns=now_ns,
-        belief=belief,
-        carried=relocations(domain, belief) != relocations(domain, state.belief),
-        arrivals=newest_arrivals(state.arrivals, samples),
-        streams=with_samples(state.streams, tuple(s for s in received if s.key in sensors), now_ns),
-        measurements=measurements,
-        overruns_ns=overruns,
-        arming=_driver_of(context, state.arming, now_ns, inputs),
-    )
+    arming = _driver_of(context, state.arming, now_ns, inputs)
+    state = replace(state, tick=state.tick + 1, now_ns=now_ns, overruns_ns=overruns, arming=arming)
+    state = _with_readings(context, state, inputs.samples)
     if inputs.goal:
         state = _with_goal(context, state, inputs.goal)
     if inputs.stopping:
@@ -58,7 +35,7 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
 def disarmed(context: Context, state: State) -> Cause | None:
     """Cause for which the driver does not obey this executive; None if it does."""
     driver, robot = state.arming.driver, context.domain.robot
-    if driver is None or _is_silent(state.arming, state.now_ns):
+    if driver is None or is_stale("driver", state.arming.heard_ns, state.now_ns):
         return Cause(Reason.DRIVER_SILENT, robot)
     if driver.mode != "armed":
         return Cause(Reason.DRIVER_NOT_ARMED, reason_text(driver.mode, reason_text(driver.reason, driver.detail)))
@@ -69,9 +46,24 @@ def disarmed(context: Context, state: State) -> Cause | None:
 
 def slow_inputs(context: Context, state: State) -> Cause | None:
     """Cause for which no new action starts; None if all required sensors come at their rates."""
-    domain, rates_hz = context.domain, context.sensor_rates_hz
-    slow = slow_topics(domain.required, domain.robot, state.streams, state.now_ns, rates_hz)
+    slow = slow_topics(context.sensor_rates_hz, context.domain.robot, state.streams, state.now_ns)
     return Cause(Reason.INPUT_SLOW, ", ".join(slow)) if slow else None
+
+
+def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) -> State:
+    """Belief, and age and rate of the sensors: what is no measurement keeps no topic fresh, but its sender known."""
+    domain = context.domain
+    received = of_known_senders(domain.sensors, domain.robot, state.streams, samples)
+    measurements, readings = without_faulty(state.measurements, received, fastest_of(domain))
+    belief = domain.update(state.belief, state.now_ns, readings, state.command)
+    return replace(
+        state,
+        belief=belief,
+        carried=relocations(domain, belief) != relocations(domain, state.belief),
+        arrivals=newest_arrivals(state.arrivals, readings),
+        streams=with_samples(state.streams, received, state.now_ns),
+        measurements=measurements,
+    )
 
 
 def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) -> Arming:
@@ -82,7 +74,7 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
     for sample in inputs.samples:
         if sample.key == key and isinstance(sample.message, DriverState):
             first = not arming.driver_sender and arming.driver is None
-            if first or sample.sender == arming.driver_sender or _is_silent(arming, sample.arrival_ns):
+            if first or sample.sender == arming.driver_sender or is_stale("driver", arming.heard_ns, sample.arrival_ns):
                 arming = replace(
                     arming,
                     driver=sample.message,
@@ -91,11 +83,6 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
                     echo_age_ns=echo_age_ns(sample.message, sample.arrival_ns, context.stamp_offset_ns),
                 )
     return arming
-
-
-def _is_silent(arming: Arming, now_ns: int) -> bool:
-    limit_s = TOPICS["driver"].fresh_s
-    return limit_s is not None and (arming.heard_ns is None or now_ns - arming.heard_ns > limit_s * 1e9)
 
 
 def _with_goal(context: Context, state: State, goal: str) -> State:

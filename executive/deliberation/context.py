@@ -13,6 +13,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
+from tailor.schemas.topics import nominal_rates_hz
 
 PERIOD_NS = 100_000_000  # 10 Hz
 MAX_GOAL_BYTES = 8000  # each status contains the goal and must not exceed the max_bytes of its topic
@@ -75,7 +76,7 @@ class Context:
     sender: str  # this executive's sender id, 32 hex digits
     stamp_offset_ns: int = 0  # added to the monotonic time for the stamps of messages
     driver_sender: str = ""  # sender id that the driver has when this executive starts; "": the first one heard
-    sensor_rates_hz: Mapping[str, float] = field(default_factory=dict)  # nominal, by topic; else those of the topics
+    sensor_rates_hz: Mapping[str, float] = field(default_factory=dict)  # nominal, of required sensors, by topic
 
     def stamp(self, now_ns: int) -> int:
         """Stamp of a message, from the monotonic time `now_ns`."""
@@ -102,7 +103,17 @@ def make_context(
         getattr(planning, name)  # loads its module: a tick has no time for that
     pddl_domain = planning.parse_domain(domain.pddl, f"domain {domain.name}")
     problem = planning.parse_problem(scenario.problem, pddl_domain, f"scenario {scenario.name}")
-    return Context(domain, scenario, models, pddl_domain, problem, settings, sender, stamp_offset_ns)
+    return Context(
+        domain,
+        scenario,
+        models,
+        pddl_domain,
+        problem,
+        settings,
+        sender,
+        stamp_offset_ns,
+        sensor_rates_hz=nominal_rates_hz(domain.required),
+    )
 
 
 def check_goal(context: Context, goal: str) -> Cause | None:

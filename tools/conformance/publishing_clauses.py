@@ -34,7 +34,7 @@ def keeps_its_rates(bench: Bench) -> Iterator[str]:
     """Each sensor that the domain requires comes at its rate in driver.toml, or a simulator's at that of its topic."""
     since_s = _listen(bench)
     for sensor in bench.spec.sensors:
-        rate_hz = sensor.rate_hz or TOPICS[sensor.topic].rate_hz
+        rate_hz = sensor.nominal_hz
         if sensor.topic not in bench.domain.required or not rate_hz:
             continue
         found_hz = len(bench.heard(sensor.topic, since_s)) / LISTEN_S

@@ -8,7 +8,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
-from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate
+from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate, nominal_rates_hz
 from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
 
 MIN_FRESH = 2  # messages of a sensor before it is stale, so that it may lose one
@@ -37,8 +37,8 @@ def check_driver(domain: Domain, driver: DriverSpec) -> None:
 
 def sensor_rates_hz(domain: Domain, driver: DriverSpec) -> dict[str, float]:
     """Nominal rates of the sensors that a domain requires, by topic: as declared, else those of the topics."""
-    declared = {sensor.topic: sensor.rate_hz for sensor in driver.sensors if sensor.rate_hz}
-    return {topic: declared.get(topic, TOPICS[topic].rate_hz) for topic in domain.required if topic in TOPICS}
+    declared = {sensor.topic: sensor.nominal_hz for sensor in driver.sensors}
+    return {topic: declared.get(topic, rate_hz) for topic, rate_hz in nominal_rates_hz(domain.required).items()}
 
 
 def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:

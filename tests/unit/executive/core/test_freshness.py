@@ -6,10 +6,10 @@ import dataclasses
 
 import pytest
 
-from tailor.executive.core.freshness import slow_topics, with_samples
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs
 from tailor.executive.core.step import step
+from tailor.executive.core.streams import slow_topics, with_samples
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import ActionFinished, Odometry, Sample
@@ -88,7 +88,7 @@ def test_the_rate_is_judged_by_the_numbers_over_a_second(numbers, expected):
         sample = Sample("agilo/odom", None, n * TICK, number, "cd" * 16)
         streams = with_samples(streams, (sample,), n * TICK)
     assert len(streams["agilo/odom"].samples) <= 11
-    assert slow_topics(("odom",), "agilo", streams, 11 * TICK, {}) == expected
+    assert slow_topics({"odom": 50.0}, "agilo", streams, 11 * TICK) == expected
 
 
 @pytest.mark.parametrize(("nominal_hz", "expected"), [(10.0, ()), (20.0, ("odom at 10 of 20 Hz",))])
@@ -96,7 +96,7 @@ def test_a_declared_rate_takes_the_place_of_the_topics(nominal_hz, expected):
     streams = {}
     for n in range(12):
         streams = with_samples(streams, (Sample("agilo/odom", None, n * TICK, n, "cd" * 16),), n * TICK)
-    assert slow_topics(("odom",), "agilo", streams, 11 * TICK, {"odom": nominal_hz}) == expected
+    assert slow_topics({"odom": nominal_hz}, "agilo", streams, 11 * TICK) == expected
 
 
 def test_a_robot_whose_driver_declares_a_lower_rate_is_driven_to_its_goal():
@@ -110,14 +110,14 @@ def test_another_sender_is_judged_anew():
     for n in range(12):
         sample = Sample("agilo/odom", None, n * TICK, n, ("cd" if n < 4 else "ef") * 16)
         streams = with_samples(streams, (sample,), n * TICK)
-    assert slow_topics(("odom",), "agilo", streams, 11 * TICK, {}) == ()
+    assert slow_topics({"odom": 50.0}, "agilo", streams, 11 * TICK) == ()
 
 
 def test_a_sensor_that_ceased_is_judged_by_its_age_alone():
     streams = {}
     for n in range(12):
         streams = with_samples(streams, (Sample("agilo/odom", None, n * TICK, 5 * n, "cd" * 16),), n * TICK)
-    assert [slow_topics(("odom",), "agilo", with_samples(streams, (), n * TICK), n * TICK, {}) for n in (12, 40)] == [
+    assert [slow_topics({"odom": 50.0}, "agilo", with_samples(streams, (), n * TICK), n * TICK) for n in (12, 40)] == [
         (),
         (),
     ]

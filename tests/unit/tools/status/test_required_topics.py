@@ -95,7 +95,7 @@ def test_an_executive_publishes_what_its_domain_requires_with_the_rates_of_its_d
     config = ExecutiveConfig("soccer", "approach")
     context = build_context(config, EXECUTIVE)
     assert provenance(config, context)["required"] == {"agilo/odom": 50.0, "agilo/pose": 12.5}
-    slower = replace(context, sensor_rates_hz={"odom": 10.0})
+    slower = replace(context, sensor_rates_hz={**context.sensor_rates_hz, "odom": 10.0})
     described = provenance(config, slower)
     assert described["required"] == {"agilo/odom": 10.0, "agilo/pose": 12.5}
     assert rebuild_context(described).sensor_rates_hz == {"odom": 10.0, "pose": 12.5}
