@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_named
 from tailor.runtime.bus.inbox import Raw
@@ -17,6 +18,7 @@ from tailor.schemas.messages import EStop, TickReport, VelocityCommand
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
+from tailor.tools.recordings.verification import verify
 
 GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"
 STRANGER = "ab" * 16
@@ -118,3 +120,11 @@ def test_any_number_of_foreign_senders_is_reported_in_one_short_line(tmp_path, w
     extra = [(f"{n:08x}" * 4, GARBAGE, TICK) for n in range(40)]
     runs = RecordedRuns(written(tmp_path / "a.mcap", whole, extra))
     assert runs.left_out_text().endswith(", 37 others")
+
+
+def test_only_who_asks_for_a_part_gets_the_verdict_on_one(tmp_path, whole):
+    """A golden recording that lost a tick must not pass for whole."""
+    kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 7]
+    runs = RecordedRuns(written(tmp_path / "a.mcap", kept))
+    with pytest.raises(UsageError, match="tick 7 is missing"):
+        verify(runs, runs.runs[0], rebuild_context(runs.runs[0].provenance))
