@@ -9,7 +9,8 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, suppre
 from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password
-from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, hosted, run_folder
+from tailor.runtime.bus.rights.hosted_folder import hosted
+from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads
 from tailor.schemas.errors import UnreachableError, UsageError

@@ -1,5 +1,6 @@
 """The folder of a bus: its passwords are of one run, and only the user who started it reads them."""
 
+import fcntl
 import os
 import socket
 import stat
@@ -8,7 +9,8 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from tailor.runtime.bus.rights import run_folder as module
-from tailor.runtime.bus.rights.run_folder import LOCK, SOCKET, USERS, hosted, run_folder
+from tailor.runtime.bus.rights.hosted_folder import hosted
+from tailor.runtime.bus.rights.run_folder import LOCK, SOCKET, USERS, run_folder
 from tailor.schemas.errors import UsageError
 
 ENDPOINT = "tcp/127.0.0.1:7999"
@@ -47,6 +49,30 @@ def test_the_group_of_a_service_may_read_them(tmp_path, monkeypatch):
     with hosted(ENDPOINT, ["people"]) as folder:
         assert folder.path.parent == tmp_path / "s"
         assert (mode(folder.path), mode(folder.users_file)) == (0o750, 0o640)
+
+
+def cleaned(folder):
+    """What systemd-tmpfiles does with a folder whose files are old: one under a BSD lock it leaves alone."""
+    opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return
+    finally:
+        os.close(opened)
+    for path in folder.iterdir():
+        path.unlink()
+
+
+@pytest.mark.promise("P45")
+def test_a_cleaner_of_old_files_takes_nobody_the_passwords_of_a_bus_that_runs():
+    """Without them `tailor estop` opens no session."""
+    with hosted(ENDPOINT, ["people"]) as folder:
+        password = folder.password("people")
+        cleaned(folder.path)
+        assert folder.password("people") == password
+    with hosted(ENDPOINT, ["people"]) as folder:
+        assert folder.password("people") != password, "the lock ends with the bus"
 
 
 def test_every_role_has_a_password_of_its_own_and_every_run_new_ones():

@@ -1,0 +1,109 @@
+"""Owns the folder of a bus that runs: makes it private, writes its passwords, and empties it at the end."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import secrets
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from tailor.runtime.bus.rights.run_folder import (
+    CERTIFICATE_USER,
+    LOCK,
+    PROFILE,
+    SOCKET,
+    VARIABLE,
+    RunFolder,
+    is_private,
+    run_folder,
+)
+from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.profiles import PLAIN, KeyProfile
+
+MAX_SOCKET_BYTES = 107  # Linux: sun_path, without its final zero
+
+
+@contextmanager
+def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Iterator[RunFolder]:
+    """Own the folder of a new bus; emptied at the end.
+
+    Args:
+      endpoint: Names the bus.
+      users: Each gets a fresh password; none: an open bus.
+      keys: Keys of the bus; sessions on this machine read them here.
+
+    Raises:
+      UsageError: The bus runs already, or the folder cannot be made or is not private.
+    """
+    folder = run_folder(endpoint)
+    _make_private(folder.path)
+    if len(str(folder.path / SOCKET)) > MAX_SOCKET_BYTES:
+        raise UsageError(f"{folder.path}: too long for a socket, expected a shorter {VARIABLE}")
+    with _locked(folder.path / LOCK, endpoint), _kept_from_cleaners(folder.path):
+        try:
+            _empty(folder.path)
+            _write_secret(folder.path / PROFILE, [f"{keys.profile} {keys.domain}"])
+            if users:
+                _write_secret(folder.users_file, [f"{user}:{secrets.token_hex(16)}" for user in users])
+                _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])
+            yield folder
+        finally:
+            _empty(folder.path)
+    with suppress(OSError):  # the next bus at this endpoint has made it again
+        folder.path.rmdir()
+
+
+@contextmanager
+def _locked(path: Path, endpoint: str) -> Iterator[None]:
+    """Hold a lock file, which is removed at the end; a lock of a process that has died is free."""
+    with path.open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not os.path.samestat(os.fstat(lock.fileno()), path.stat()):
+                raise BlockingIOError  # removed by its last owner a moment ago
+        except OSError as error:
+            raise UsageError(f"bus endpoint {endpoint}: it runs already; expected a free one, see --connect") from error
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _kept_from_cleaners(folder: Path) -> Iterator[None]:
+    """Hold a BSD lock on a folder, by which systemd-tmpfiles leaves alone what is in it.
+
+    It removes what has lain in /tmp for ten days. Without the passwords nobody could stop a robot from a shell.
+    """
+    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_SH)  # waits for a cleaner that is at it, which takes milliseconds
+        yield
+    finally:
+        os.close(held)
+
+
+def _make_private(path: Path) -> None:
+    mode = 0o750 if VARIABLE in os.environ else 0o700
+    try:
+        path.parent.parent.mkdir(parents=True, exist_ok=True)
+        for each in (path.parent, path):  # one by one: `parents` makes them as the umask says, perhaps for a group
+            each.mkdir(mode=mode, exist_ok=True)
+            if not is_private(each):
+                raise UsageError(f"{each}: expected a folder that only this user may write, see {VARIABLE}")
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected a place for a private folder, see {VARIABLE}") from error
+
+
+def _write_secret(path: Path, lines: Sequence[str]) -> None:
+    mode = 0o640 if VARIABLE in os.environ else 0o600
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "w") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def _empty(folder: Path) -> None:
+    for path in folder.iterdir():
+        if path.name != LOCK:
+            path.unlink()
