@@ -8,7 +8,7 @@ import secrets
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
@@ -45,6 +45,9 @@ class Child:
           argv: Program and arguments.
           output: Destination of stdout and stderr; None: those of this process.
           notify_folder: Folder, of this user alone, for the socket that the child reports to; None: it cannot report.
+
+        Raises:
+          OSError: The system refuses, e.g. for want of memory or descriptors; nothing is left behind.
         """
         self.name = name
         environment = {**os.environ, **ONE_THREAD}
@@ -53,16 +56,12 @@ class Child:
         if notify_folder is not None:
             self._socket = NotifySocket(notify_folder / f"{name}-{secrets.token_hex(4)}")
             environment[SOCKET_VARIABLE] = str(self._socket.path)
-        # A session of its own: Ctrl-C reaches only the launcher, which then stops its children in order.
-        self._process = subprocess.Popen(
-            bound_to_parent(argv),
-            env=environment,
-            stdout=output,
-            stderr=output,
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        kill_if_orphaned(self.pid)
+        try:
+            self._process = _started(argv, environment, output)
+        except OSError:
+            if self._socket is not None:
+                self._socket.close()
+            raise
 
     @property
     def pid(self) -> int:
@@ -98,6 +97,28 @@ class Child:
         """Send SIGKILL and wait for the end; returns the exit code, or None if the kernel has not ended it in time."""
         self._process.kill()
         return self.wait(timeout_s)
+
+
+def _started(
+    argv: Sequence[str], environment: Mapping[str, str], output: IO[str] | int | None
+) -> subprocess.Popen[bytes]:
+    """The process, which is killed if this one dies."""
+    # A session of its own: Ctrl-C reaches only the launcher, which then stops its children in order.
+    process = subprocess.Popen(
+        bound_to_parent(argv),
+        env=environment,
+        stdout=output,
+        stderr=output,
+        stdin=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        kill_if_orphaned(process.pid)
+    except OSError:  # whoever is not told of it could not stop it either
+        process.kill()
+        process.wait(KILL_S)
+        raise
+    return process
 
 
 def tailor(*arguments: str) -> list[str]:

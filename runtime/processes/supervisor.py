@@ -75,20 +75,30 @@ class Supervisor:
                 process.forgive(pause_ns, now_ns)
 
     def _died(self, process: Supervised, code: int, now_ns: int) -> None:
-        name = process.spec.name
         if not process.spec.restarts or code in FINAL_CODES:
             process.over = True
             if code != 0:
-                self._report(f"{name} ended with {code}; not started again")
-        elif process.restart.exhausted(now_ns):
+                self._report(f"{process.spec.name} ended with {code}; not started again")
+        else:
+            self._start_later(process, f"ended with {code}", now_ns)
+
+    def _start_later(self, process: Supervised, why: str, now_ns: int) -> None:
+        if process.restart.exhausted(now_ns):
             process.over = True
-            self._report(f"{name} ended with {code}; gave up: too many starts within a minute")
+            self._report(f"{process.spec.name} {why}; gave up: too many starts within a minute")
         else:
             delay_ns = process.restart.delay_ns(now_ns)
             process.start_at_ns = now_ns + delay_ns
-            self._report(f"{name} ended with {code}; starting again in {delay_ns / 1e9:.1f} s")
+            self._report(f"{process.spec.name} {why}; starting again in {delay_ns / 1e9:.1f} s")
 
     def _start_when_due(self, process: Supervised, now_ns: int) -> None:
-        if process.start_at_ns is not None and now_ns >= process.start_at_ns:
-            argv = process.spec.command_line(process.starts + 1)
-            process.begin(self._launch(process.spec.name, argv), now_ns)
+        if process.start_at_ns is None or now_ns < process.start_at_ns:
+            return
+        argv = process.spec.command_line(process.starts + 1)
+        try:
+            child = self._launch(process.spec.name, argv)
+        except OSError as error:  # no memory, processes, descriptors or place on a disk: the others go on
+            process.restart.started(now_ns)
+            self._start_later(process, f"cannot be started: {error.strerror}", now_ns)
+        else:
+            process.begin(child, now_ns)

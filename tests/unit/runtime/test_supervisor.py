@@ -1,5 +1,6 @@
 """Restarting, and children that cannot outlive their parent."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from tailor.runtime.processes import child as child_module
 from tailor.runtime.processes.child import Child, stopped_in_order
 from tailor.runtime.processes.notify_socket import Report
 from tailor.runtime.processes.restart import Restart
@@ -68,6 +70,10 @@ class FakeChild:
     stopped: list = []
 
 
+def refused(name, argv):
+    raise OSError(errno.ENOMEM, os.strerror(errno.ENOMEM))
+
+
 @pytest.fixture
 def supervisor():
     FakeChild.made, FakeChild.stopped, reported = [], [], []
@@ -97,6 +103,50 @@ def test_a_crash_loop_is_given_up(supervisor):
     assert len(FakeChild.made) == 5
     assert supervisor.state("executive") is State.ENDED
     assert supervisor.reported[-1] == "executive ended with 1; gave up: too many starts within a minute"
+
+
+@pytest.mark.promise("P2")
+def test_a_start_that_the_system_refuses_is_repeated_and_harms_no_other_child(supervisor, monkeypatch):
+    supervisor.start(ProcessSpec("sim", ["y"]), 0)
+    supervisor.start(ProcessSpec("executive", ["x"]), 0)
+    FakeChild.made[1].code = -9
+    supervisor.poll(S)
+    monkeypatch.setattr(supervisor, "_launch", refused)
+    supervisor.poll(S + 200 * MS)
+    assert supervisor.reported[1:] == ["executive cannot be started: Cannot allocate memory; starting again in 0.4 s"]
+    assert (supervisor.state("executive"), supervisor.state("sim")) == (State.WAITING, State.STARTING)
+    monkeypatch.setattr(supervisor, "_launch", FakeChild)
+    supervisor.poll(S + 600 * MS - 1)
+    assert len(FakeChild.made) == 2
+    supervisor.poll(S + 600 * MS)
+    assert (len(FakeChild.made), supervisor.state("executive")) == (3, State.STARTING)
+
+
+@pytest.mark.promise("P2")
+def test_of_a_start_that_fails_half_way_nothing_is_left(tmp_path, monkeypatch):
+    watched = []
+
+    def refuse(pid):
+        watched.append(pid)
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(child_module, "kill_if_orphaned", refuse)
+    with pytest.raises(OSError, match="Too many open files"):
+        Child("c", ["sleep", "60"], notify_folder=tmp_path)
+    assert not is_alive(watched[0])
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.promise("P2")
+def test_starts_that_the_system_refuses_count_as_a_crash_loop(supervisor, monkeypatch):
+    supervisor.start(ProcessSpec("executive", ["x"]), 0)
+    FakeChild.made[0].code = -9
+    monkeypatch.setattr(supervisor, "_launch", refused)
+    for k in range(1, 400):
+        supervisor.poll(k * 100 * MS)
+    assert supervisor.state("executive") is State.ENDED
+    assert len(supervisor.reported) == 5
+    assert supervisor.reported[-1].endswith("Cannot allocate memory; gave up: too many starts within a minute")
 
 
 @pytest.mark.parametrize(("restarts", "code"), [(False, 1), (True, 0), (True, 2)])
