@@ -9,7 +9,7 @@ from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.interfaces.domain import Conflict, Scenario
 from tailor.executive.interfaces.values import Fact
 
-OBSERVED = ("cup-at", "holding", "hand-empty", "arm-home", "open", "free", "robot-at")
+OBSERVED = ("cup-at", "holding", "hand-empty", "arm-home", "arm-out", "open", "free", "robot-at")
 
 
 def anchor(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
@@ -26,7 +26,7 @@ def anchor(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact
         facts.add(("hand-empty",))
     stand = _stand(belief, scenario, remembered, cups)
     facts |= {("open", label) for label in scenario.settings["open_places"]}
-    facts |= {("robot-at", stand), ("arm-home",) if belief.arm_is_home else ("open", stand)}
+    facts |= {("robot-at", stand)} | ({("arm-home",)} if belief.arm_is_home else {("arm-out",), ("open", stand)})
     return frozenset(facts)
 
 

@@ -6,10 +6,11 @@ A label of the plan denotes a place: the robot's stand (x, y, phi, v), and the s
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.go_to_pose import GoToPose
-from tailor.executive.domains.kitchen.arm_tasks import GRIP, PUT, REACH_SPOT
+from tailor.executive.domains.kitchen.arm_tasks import FOLD, GRIP, PUT, REACH_SPOT
 from tailor.executive.domains.kitchen.drive_context import FURNITURE
 from tailor.executive.domains.kitchen.drive_to_stand import DriveToStand
 from tailor.executive.interfaces.action import Action, Parameter
@@ -51,6 +52,16 @@ def _spot(argument: int) -> tuple[Parameter, ...]:
     )
 
 
+def _hand() -> tuple[Parameter, ...]:
+    """Parameters of an arm that comes home: as those of `_spot`, but the spot is wherever the hand is."""
+    return tuple(
+        replace(each, quantity=f"hand_{each.name.removeprefix('spot_')}", tolerance=None)
+        if each.name in ("spot_x", "spot_y", "aside")
+        else each
+        for each in _spot(0)
+    )
+
+
 def _out(argument: int) -> Parameter:
     return Parameter("out", argument, "out", "1", 0.0, 1.0)
 
@@ -77,8 +88,10 @@ GO_TO_POSE = Action(
     drives=("base",),
 )
 REACH = Action("reach", _spot(0), REACH_SPOT, "reach/duration", drives=("arm",))
+# rest to rest by the same joint angles, it takes as long as to reach there
+FOLD_ARM = Action("fold", _hand(), FOLD, "reach/duration", drives=("arm",))
 GRIP_CUP = Action("grip", (*_spot(1), _out(1), _handle(1)), GRIP, "grip/duration", drives=("arm", "gripper"))
 PUT_CUP = Action("put", (*_spot(1), _out(1)), PUT, "put/duration", drives=("arm", "gripper"))
 
-ACTIONS = {action.name: action for action in (GO_TO_POSE, REACH, GRIP_CUP, PUT_CUP)}
-EXECUTABLES = {"navigate": "goToPose", "reach": "reach", "grip": "grip", "put": "put"}
+ACTIONS = {action.name: action for action in (GO_TO_POSE, REACH, FOLD_ARM, GRIP_CUP, PUT_CUP)}
+EXECUTABLES = {"navigate": "goToPose", "reach": "reach", "fold": "fold", "grip": "grip", "put": "put"}

@@ -1,4 +1,4 @@
-"""What the arm does at a place: reach over it, grip the cup that stands there, put down the cup in the gripper.
+"""What the arm does at a place: reach over it, grip the cup that stands there, put it down, and come home.
 
 Arguments: the stand (x, y, phi), the cup's spot (x, y), how far the hand comes from aside, whether the arm is out.
 """
@@ -89,6 +89,7 @@ def _kept(belief: KitchenBelief) -> str:
 
 
 REACH_SPOT = ArmTask(REACH, (Stretch(Hand(OVER_M, BACK_M)),), JOINT_MAX_RADPS, homing=False)
+FOLD = ArmTask(REACH, (Stretch(_home),), JOINT_MAX_RADPS)
 GRIP = ArmTask(
     REACH,
     (

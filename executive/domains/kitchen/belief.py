@@ -62,6 +62,13 @@ class KitchenBelief:
         return c * dx + s * dy, c * dy - s * dx
 
     @property
+    def hand(self) -> tuple[float, float, float]:
+        """Place of the grasp point, m in the map frame."""
+        ahead, left, z = robot.ARM.forward(self.angles).place
+        c, s = math.cos(self.pose.phi), math.sin(self.pose.phi)
+        return self.pose.x + c * ahead - s * left, self.pose.y + s * ahead + c * left, z
+
+    @property
     def arm_is_home(self) -> bool:
         """Whether the arm is folded."""
         return max(abs(a - b) for a, b in zip(self.angles, robot.HOME, strict=True)) < robot.HOME_RAD
@@ -141,15 +148,13 @@ def _with_held(belief: KitchenBelief) -> KitchenBelief:
     grasped = bool(belief.held) or belief.force > robot.HELD_N
     if not grasped or not narrowest < belief.width < widest:
         return replace(belief, held="", things=objects.let_go(belief.things, belief.held)) if belief.held else belief
-    ahead, left, z = robot.ARM.forward(belief.angles).place
-    c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)
-    hand = belief.pose.x + c * ahead - s * left, belief.pose.y + s * ahead + c * left, z
-    held = belief.held or _cup_near(belief, hand)
-    things = objects.carried(belief.things, held, hand[0], hand[1], z) if held else belief.things
+    held = belief.held or _cup_near(belief)
+    things = objects.carried(belief.things, held, *belief.hand) if held else belief.things
     return replace(belief, held=held, things=things)
 
 
-def _cup_near(belief: KitchenBelief, hand: tuple[float, float, float]) -> str:
+def _cup_near(belief: KitchenBelief) -> str:
+    hand = belief.hand
     cups = (thing for thing in belief.things if thing.name.startswith("cup"))
     near = [(math.dist((cup.x, cup.y, cup.z), hand), cup.name) for cup in cups]
     distance, name = min(near, default=(math.inf, ""))

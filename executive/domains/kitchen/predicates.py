@@ -14,6 +14,7 @@ from tailor.executive.interfaces.values import Interval
 from tailor.schemas.kitchen.kinematics import V_MAX_MPS
 
 STAND = ("x", "y", "phi", "v")
+HAND = ("hand_x", "hand_y", "hand_aside")  # where the hand is, whatever the label
 OUT, IN = Interval(1.0, 1.0), Interval(0.0, 0.0)  # whether the arm has reached over the place before
 
 
@@ -24,6 +25,8 @@ def value(query: LabelQuery) -> Interval | None:
     """
     if query.quantity in STAND:
         return _stand(query).get(query.quantity)
+    if query.quantity in HAND:
+        return _hand(query.belief)[query.quantity]
     if query.quantity == "out":
         return OUT if ("open", query.label) in query.achieved or not query.belief.arm_is_home else IN
     if query.quantity == "aside":
@@ -37,10 +40,20 @@ def _aside(query: LabelQuery) -> Interval | None:
         return None
     spot = _spot(query)
     x, y = (0.5 * (spot[name].lower + spot[name].upper) for name in ("spot_x", "spot_y"))
-    ahead, left = query.belief.in_base(x, y)
-    c, s, _ = robot.ARM.forward(query.belief.angles).turn[0]
+    return _pointing(query.belief, *query.belief.in_base(x, y))
+
+
+def _pointing(belief: KitchenBelief, ahead: float, left: float) -> Interval:
+    """How far aside of the line from the shoulder to a place in base_link (m) the hand points."""
+    c, s, _ = robot.ARM.forward(belief.angles).turn[0]
     aside = difference(math.atan2(s, c), math.atan2(left, ahead - robot.AHEAD_M))
     return Interval(*(max(-ASIDE_RAD, min(ASIDE_RAD, aside)),) * 2)
+
+
+def _hand(belief: KitchenBelief) -> Mapping[str, Interval]:
+    x, y, _ = belief.hand
+    ahead, left, _ = robot.ARM.forward(belief.angles).place
+    return {**_exact({"hand_x": x, "hand_y": y}), "hand_aside": _pointing(belief, ahead, left)}
 
 
 def _stand(query: LabelQuery) -> Mapping[str, Interval]:

@@ -63,7 +63,7 @@ class KitchenSampler(KitchenOutcomes):
             start["held"] = 1.0
         elif action.name == "grip":
             start |= {f"{CUP}_x": others[0], f"{CUP}_y": others[1], f"{CUP}_phi": arguments[HANDLE].item()}
-        if action.name != "reach" and arguments[OUT] > 0.5:
+        if action.name == "fold" or (action.name != "reach" and arguments[OUT] > 0.5):
             angles = Hand(OVER_M, BACK_M)(KitchenBelief(pose=_exact(start)), arguments)
             start |= {} if angles is None else dict(zip(JOINTS, angles, strict=True))
         return start
