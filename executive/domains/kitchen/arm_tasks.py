@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from tailor.executive.actions.arm_task import ArmTask, Stretch
 from tailor.executive.actions.cubic import Joints
 from tailor.executive.actions.reach import Reach
-from tailor.executive.domains.kitchen import robot
+from tailor.executive.domains.kitchen import objects, robot
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M, JOINT_MAX_RADPS
@@ -67,7 +67,7 @@ class Hand:
 
 
 def _cup_at(belief: KitchenBelief, x: float, y: float) -> tuple[float, float]:
-    cups = (thing for thing in belief.things if thing.name.startswith("cup") and thing.name != belief.held)
+    cups = (cup for cup in objects.cups(belief.things) if cup.name != belief.held)
     near = min(((math.hypot(cup.x - x, cup.y - y), cup.x, cup.y) for cup in cups), default=(math.inf, x, y))
     return near[1:] if near[0] < SAME_CUP_M else (x, y)
 

@@ -155,7 +155,6 @@ def _with_held(belief: KitchenBelief) -> KitchenBelief:
 
 def _cup_near(belief: KitchenBelief) -> str:
     hand = belief.hand
-    cups = (thing for thing in belief.things if thing.name.startswith("cup"))
-    near = [(math.dist((cup.x, cup.y, cup.z), hand), cup.name) for cup in cups]
+    near = [(math.dist((cup.x, cup.y, cup.z), hand), cup.name) for cup in objects.cups(belief.things)]
     distance, name = min(near, default=(math.inf, ""))
     return name if distance < IN_HAND_M else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache
 
 from tailor.executive.belief.angles import wrap
 from tailor.executive.belief.planar_ekf import Pose
@@ -15,7 +16,6 @@ MOVED_SIGMAS, MOVED_M = 5.0, 0.04  # a percept farther off than both is not nois
 LEAST_M2 = 1e-7  # variance below which no estimate falls, so that it can still follow
 CREDIBLE_M = 20.0
 PUT_DOWN_M = 0.05  # from the height at which a cup stands on a table
-MOST = 24  # names that are kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,14 +36,25 @@ def see(things: tuple[Thing, ...], pose: Pose, percepts: tuple[ObjectPercept, ..
     """Fuse a picture, taken from a pose; objects stay where they are until they are seen elsewhere."""
     known = {thing.name: thing for thing in things}
     for percept in percepts:
-        if math.hypot(percept.x, percept.y) < CREDIBLE_M and (percept.name in known or len(known) < MOST):
+        if math.hypot(percept.x, percept.y) < CREDIBLE_M and percept.name in _names():
             known[percept.name] = _fused(known.get(percept.name), _in_map(percept, pose, now_ns))
     return tuple(known[name] for name in sorted(known))
+
+
+@cache
+def _names() -> frozenset[str]:
+    """What there is in the kitchen; a detector finds other things too, however many."""
+    return frozenset((*kitchen().tables, *kitchen().cups, "stool"))
 
 
 def named(things: tuple[Thing, ...], name: str) -> Thing | None:
     """The object of a name; None if it was never seen."""
     return next((thing for thing in things if thing.name == name), None)
+
+
+def cups(things: tuple[Thing, ...]) -> tuple[Thing, ...]:
+    """The cups among the objects."""
+    return tuple(thing for thing in things if thing.name in kitchen().cups)
 
 
 def carried(things: tuple[Thing, ...], name: str, x: float, y: float, z: float) -> tuple[Thing, ...]:
