@@ -29,7 +29,8 @@ class Body(Protocol):
     """A robot in its world. Seed, start and commands determine all states, bit for bit, in every process.
 
     One that cannot take every finite start value has a method `refusal(values) -> str`: what is wrong with values from
-    outside, empty if nothing is.
+    outside, empty if nothing is. One with axes that are kept when the robot stops (`kept` in driver.toml) has a method
+    `kept() -> tuple[float, ...]`: a set-point for each axis, at which these stay where they are.
 
     Attributes:
       robot: Name of the robot, as in topic keys.

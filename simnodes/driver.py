@@ -6,7 +6,7 @@ A sim node and a hardware driver both use it; it imports no body, no clock and n
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
@@ -29,7 +29,7 @@ class Driver:
     """Feeds a guard from the bus and reports its state.
 
     Attributes:
-      guard: The guard; `guard.output(now_ns)` gives the set-points for the motors.
+      guard: The guard; its `output(now_ns)` gives the set-points for the motors, see also `set_points`.
       held: The dead man's switches; when one falls silent, the driver stops and latches.
       unready: Why the hardware cannot be driven now, so that arming is refused; empty: it can.
     """
@@ -79,6 +79,21 @@ class Driver:
                     command = (whole.sequence, whole.values, whole.stamp_ns)
                     self.guard.command(arrival_ns, sample.sender, *command, guard_lag_ns)
         self._rejected = rejected
+
+    def set_points(self, now_ns: int, kept: Callable[[], Sequence[float]] | None) -> tuple[float, ...]:
+        """Set-points for the motors; an axis that is kept stays where it is, unless the driver is armed.
+
+        It would otherwise go on to its last set-point after an e-stop, and before anybody has armed the driver.
+
+        Args:
+          now_ns: Monotonic time.
+          kept: Set-points at which such axes stay where they are, see Body; None: unknown, or there are none.
+        """
+        values = self.guard.output(now_ns)
+        if kept is None or self.guard.mode is Mode.ARMED:
+            return values
+        self.guard.keep(kept())
+        return self.guard.output(now_ns)
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
         """The state if it is due: at 10 Hz, and at once when mode, reason or detail change.

@@ -161,6 +161,19 @@ class Guard:
         self._expire(now_ns)
         return self._values
 
+    def keep(self, values: Sequence[float]) -> None:
+        """Take the set-points at which axes that keep theirs stay where they are; ignored while armed.
+
+        Args:
+          values: One for each axis; only those of axes that are kept count, and only within their limits.
+        """
+        if self.mode is not Mode.ARMED:
+            rows = zip(self._limits, values, self._values, strict=True)
+            self._values = tuple(
+                float(now) if limit.kept is not None and limit.lower <= now <= limit.upper else before
+                for limit, now, before in rows
+            )
+
     def _arm(self, now_ns: int, sender: str, reset: bool, by_people: bool) -> ArmRefusal | None:
         if not by_people and sender != self._leave:
             return ArmRefusal.PEOPLE_ONLY

@@ -90,7 +90,7 @@ class Node:
             steps, self._services.steps_due = self._services.steps_due, 0
             self._frozen_ns += (elapsed - steps) * self._loop.period_ns
         for _ in range(steps):
-            self._world.body.command(self.driver.guard.output(guard_ns))
+            self._world.body.command(self.driver.set_points(guard_ns, self._world.kept))
             self._publish(self._world.advance(PERIOD_NS))
             if self._services.paused:  # in lock-step the guard's time is the world's
                 guard_ns += self._loop.period_ns

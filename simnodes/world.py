@@ -5,7 +5,7 @@ It uses no bus and no wall clock: the node advances it in steps.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +40,11 @@ class World:
         self._pending: list[Event] = []
         self._begun_ns: int | None = None
         self.reset()
+
+    @property
+    def kept(self) -> Callable[[], Sequence[float]] | None:
+        """The body's method `kept`; None if it has none."""
+        return getattr(self.body, "kept", None)
 
     def reset(
         self, seed: int | None = None, start: Mapping[str, float] | None = None, events: Sequence[Event] = ()

@@ -106,6 +106,10 @@ class B21Body:
         """Set-points of base, arm and gripper in the order of driver.toml."""
         self._firmware.accept(values)
 
+    def kept(self) -> tuple[float, ...]:
+        """See Body: the gripper's present set-point, so that it goes on pressing what it holds."""
+        return (*(0.0,) * (len(JOINTS) + 2), self._firmware.width)
+
     def advance(self, duration_ns: int) -> list[Reading]:
         """See Body.advance; rates are those of driver.toml, truth 10 Hz."""
         readings, client = list[Reading](), self.client

@@ -57,7 +57,7 @@ class DriverLink:
         Returns:
           The newest reading of each sensor and the driver's state, oldest first; the newest messages of ground truth.
         """
-        self._world.body.command(self._driver.guard.output(now_ns))
+        self._world.body.command(self._driver.set_points(now_ns, self._world.kept))
         newest: dict[str, Reading] = {}
         for reading in self._world.advance(PERIOD_NS):
             newest[reading.topic] = reading
