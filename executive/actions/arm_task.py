@@ -66,12 +66,15 @@ class ArmTask:
     stretches: tuple[Stretch, ...]
     fastest_radps: float  # limit of each joint
     homing: bool = True  # the last stretch brings the arm home
+    refused: Callable[[Any, Array], str] = lambda belief, arguments: ""  # why it does not begin; "": it does
 
     def __call__(self, state: Any, now_ns: int, belief: ArmBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; velocities of the joints, rad/s, then the width, m."""
         progress = state if isinstance(state, Progress) else self._entered(0, now_ns, belief, arguments, "")
         if progress is None or progress.number >= len(self.stretches):
             return Control(state, self._still(belief, -1), "failed", "out of reach")
+        if progress is not state and (refusal := self.refused(belief, arguments)):
+            return Control(state, self._still(belief, -1), "failed", refusal)
         stretch, last = self.stretches[progress.number], progress.number == len(self.stretches) - 1
         progress, velocities, ended = self._advanced(progress, stretch, now_ns, belief)
         command = velocities if stretch.width is None else (*velocities, stretch.width)

@@ -1,5 +1,7 @@
 """Messages of sensors that are no measurements: incomplete joint states, and motion that the robot is not capable of.
 
+Others are known to the robot's domain alone, see tailor.executive.interfaces.domain.measurement_fault.
+
 A belief ignores them, but they would keep the topic fresh: an arm was driven blind to the ends of its joints, and a
 base arrived at full speed.
 """
@@ -7,7 +9,7 @@ base arrived at full speed.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.domain import Domain
@@ -36,7 +38,10 @@ class Measurements:
 
 
 def without_faulty(
-    known: Measurements, samples: tuple[Sample, ...], fastest: Speeds | None = None
+    known: Measurements,
+    samples: tuple[Sample, ...],
+    fastest: Speeds | None = None,
+    judge: Callable[[Message], str] = lambda message: "",
 ) -> tuple[Measurements, tuple[Sample, ...]]:
     """What is known after `samples`, and those that are measurements.
 
@@ -44,11 +49,12 @@ def without_faulty(
       known: What was known before them.
       samples: Of the robot's sensors, in order of arrival.
       fastest: Speeds that odometry may have; None: any.
+      judge: Why the robot's domain takes a message for none; empty: it does not.
     """
     joints, faults, kept = dict(known.joints), dict(known.faults), []
     for sample in samples:
         faults.pop(sample.key, None)
-        if fault := _fault(sample.message, joints.get(sample.key, ()), fastest):
+        if fault := _fault(sample.message, joints.get(sample.key, ()), fastest) or judge(sample.message):
             faults[sample.key] = fault
             continue
         if isinstance(sample.message, JointState):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from tailor.executive.core.freshness import MAX_ROUND_TRIP_NS, echo_age_ns, is_stale, newest_arrivals, stale_topics
 from tailor.executive.core.measurements import fastest_of, without_faulty
@@ -10,7 +11,7 @@ from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.core.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.deliberation.context import Context
-from tailor.executive.interfaces.domain import relocations
+from tailor.executive.interfaces.domain import measurement_fault, relocations
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.reason_text import reason_text
@@ -54,7 +55,8 @@ def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) 
     """Belief, and age and rate of the sensors: what is no measurement keeps no topic fresh, but its sender known."""
     domain = context.domain
     received = of_known_senders(domain.sensors, domain.robot, state.streams, samples)
-    measurements, readings = without_faulty(state.measurements, received, fastest_of(domain))
+    judge = partial(measurement_fault, domain, state.belief)
+    measurements, readings = without_faulty(state.measurements, received, fastest_of(domain), judge)
     belief = domain.update(state.belief, state.now_ns, readings, state.command)
     return replace(
         state,

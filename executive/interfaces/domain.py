@@ -81,7 +81,8 @@ class Domain(Protocol):
       executables: Executable name by PDDL action name (lower case).
       axes: Axes of the command. A robot with several command outlets also has an attribute `outlets`, see
         tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first. One whose belief
-        notices that the robot was carried to another place has a method `relocations`, see below.
+        notices that the robot was carried to another place has a method `relocations`, one that knows messages of its
+        sensors which cannot be true a method `measurement_fault`, see below.
       command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
       sensors: Topics from which the belief is estimated.
       required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.
@@ -174,6 +175,15 @@ def relocations(domain: Domain, belief: Belief) -> int:
     """
     count = getattr(domain, "relocations", None)
     return 0 if count is None else int(count(belief))
+
+
+def measurement_fault(domain: Domain, belief: Belief, message: Message) -> str:
+    """Why a message of a sensor is no measurement; empty if it is one, or for a domain without such a method.
+
+    The belief does not get such a message, and its topic does not stay fresh by it..
+    """
+    judge = getattr(domain, "measurement_fault", None)
+    return "" if judge is None else str(judge(belief, message))
 
 
 class Conflict(Exception):

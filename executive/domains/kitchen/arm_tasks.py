@@ -57,7 +57,7 @@ class Hand:
     def __call__(self, belief: KitchenBelief, arguments: Array) -> Joints | None:
         """Joint angles, rad; None if the hand does not get there."""
         x, y = float(arguments[SPOT_X]), float(arguments[SPOT_Y])
-        place = belief.in_base(*(_cup_at(belief, x, y) if self.live else (x, y)))
+        place = belief.in_base(*((_cup_at(belief, x, y) if self.live else None) or (x, y)))
         for back_m in self.back_m:
             hand = robot.level_hand(*place, robot.GRASP_M + self.up_m, float(arguments[ASIDE]), back_m)
             angles = robot.angles_for(hand)
@@ -66,14 +66,20 @@ class Hand:
         return None
 
 
-def _cup_at(belief: KitchenBelief, x: float, y: float) -> tuple[float, float]:
+def _cup_at(belief: KitchenBelief, x: float, y: float) -> tuple[float, float] | None:
+    """The cup at a spot, as it was seen; None if none was: it may be where the map has one."""
     cups = (cup for cup in objects.cups(belief.things) if cup.name != belief.held)
     near = min(((math.hypot(cup.x - x, cup.y - y), cup.x, cup.y) for cup in cups), default=(math.inf, x, y))
-    return near[1:] if near[0] < SAME_CUP_M else (x, y)
+    return near[1:] if near[0] < SAME_CUP_M else None
 
 
 def _home(belief: KitchenBelief, arguments: Array) -> Joints:
     return robot.HOME
+
+
+def _unseen(belief: KitchenBelief, arguments: Array) -> str:
+    seen = _cup_at(belief, float(arguments[SPOT_X]), float(arguments[SPOT_Y]))
+    return "no cup seen there" if seen is None else ""
 
 
 def _missed(belief: KitchenBelief) -> str:
@@ -100,6 +106,7 @@ GRIP = ArmTask(
         Stretch(_home, SHUT, failed=_lost),
     ),
     JOINT_MAX_RADPS,
+    refused=_unseen,
 )
 PUT = ArmTask(
     REACH,

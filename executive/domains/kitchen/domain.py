@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.domains.kitchen import abstract_state, predicates
+from tailor.executive.domains.kitchen import abstract_state, implausible, predicates
 from tailor.executive.domains.kitchen import belief as believing
 from tailor.executive.domains.kitchen.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.kitchen.belief import KitchenBelief
@@ -53,7 +53,7 @@ class KitchenDomain:
     )
     command_topic: str = "cmd_vel"
     sensors: tuple[str, ...] = ("odom", "pose", "joint_states", "gripper", "objects")
-    required: tuple[str, ...] = ("odom", "pose", "joint_states", "gripper")
+    required: tuple[str, ...] = ("odom", "pose", "joint_states", "gripper", "objects")
     belief_names: tuple[str, ...] = (
         "x (m)",
         "y (m)",
@@ -83,6 +83,10 @@ class KitchenDomain:
     def relocations(self, belief: KitchenBelief) -> int:
         """How often the base was moved by others."""
         return belief.relocated
+
+    def measurement_fault(self, belief: KitchenBelief, message: Message) -> str:
+        """Why a message is no measurement, see kitchen.implausible."""
+        return implausible.fault(belief, message)
 
     def belief_values(self, belief: KitchenBelief) -> tuple[float, ...]:
         """Values of `belief_names`; tables and cups not seen yet are where the map has them, last cups are left out."""
