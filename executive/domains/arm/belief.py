@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from tailor.executive.belief.joint_jumps import jumped
 from tailor.executive.domains.arm.load import Joints, observed_friction
-from tailor.executive.domains.arm.robot import JOINTS
+from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
 from tailor.schemas.messages import JointState, Sample
 
 MOTION_LIMIT_S = 0.5  # without encoder readings for longer, the last velocity is not extrapolated
@@ -33,6 +34,7 @@ class ArmBelief:
     command: Joints = (0.0, 0.0)
     acceleration: Joints = (0.0, 0.0)
     friction: Joints = (1.0, 1.0)
+    relocated: int = 0  # how often the joints were found where they cannot have moved to
 
 
 def update(belief: ArmBelief, now_ns: int, samples: tuple[Sample, ...], command: Joints) -> ArmBelief:
@@ -58,6 +60,10 @@ def _read(belief: ArmBelief, arrival_ns: int, state: JointState) -> ArmBelief:
         return belief
     at = [state.names.index(name) for name in JOINTS]
     angles, velocities = (tuple(values[i] for i in at) for values in (state.positions, state.velocities))
+    if belief.seen_ns is not None:
+        passed_s = 1e-9 * (arrival_ns - belief.seen_ns)
+        before = _predicted(belief, arrival_ns).angles
+        belief = replace(belief, relocated=belief.relocated + jumped(before, angles, passed_s, V_MAX_RADPS))
     if belief.seen_ns is not None and arrival_ns - belief.time_ns < MOTION_LIMIT_S * 1e9:
         angles, velocities = _filtered(belief, 1e-9 * (arrival_ns - belief.time_ns), angles, velocities)
     belief = replace(belief, time_ns=arrival_ns, angles=angles, velocities=velocities, seen_ns=arrival_ns)

@@ -45,6 +45,10 @@ class ArmDomain:
         """Whether an encoder reading has been received."""
         return belief.seen_ns is not None
 
+    def relocations(self, belief: ArmBelief) -> int:
+        """How often the joints were found where they cannot have moved to."""
+        return belief.relocated
+
     def belief_values(self, belief: ArmBelief) -> tuple[float, ...]:
         """As named in `belief_names`."""
         return tuple(predicates.named(belief.angles, belief.velocities).values())

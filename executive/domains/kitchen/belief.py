@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from tailor.executive.actions.cubic import Joints
 from tailor.executive.belief import planar_ekf
 from tailor.executive.belief.angles import difference
+from tailor.executive.belief.joint_jumps import jumped
 from tailor.executive.belief.planar_ekf import OdometryNoise, Pose
 from tailor.executive.domains.kitchen import objects, robot
 from tailor.executive.domains.kitchen.objects import Thing
-from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M, JOINTS
+from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M, JOINT_MAX_RADPS, JOINTS
 from tailor.schemas.messages import JointState, Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.kitchen import GripperState, ObjectPercepts
 
@@ -44,7 +45,7 @@ class KitchenBelief:
     held: str = ""  # name of the cup in the gripper
     poses_seen: int = 0
     poses_doubted: int = 0
-    relocated: int = 0  # how often the base was moved by others
+    relocated: int = 0  # how often base or arm were moved by others
 
     @property
     def friction(self) -> Joints:
@@ -139,7 +140,10 @@ def _read_joints(belief: KitchenBelief, at_ns: int, state: JointState) -> Kitche
         return belief
     at = [state.names.index(name) for name in JOINTS]
     angles, velocities = (tuple(values[i] for i in at) for values in (state.positions, state.velocities))
-    return replace(_advance(belief, at_ns), angles=angles, velocities=velocities, joints_ns=at_ns)
+    passed_s, known = 1e-9 * (at_ns - belief.joints_ns), belief.joints_ns > 0
+    belief = _advance(belief, at_ns)
+    relocated = belief.relocated + (known and jumped(belief.angles, angles, passed_s, JOINT_MAX_RADPS))
+    return replace(belief, angles=angles, velocities=velocities, joints_ns=at_ns, relocated=relocated)
 
 
 def _with_held(belief: KitchenBelief) -> KitchenBelief:

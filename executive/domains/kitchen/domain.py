@@ -81,7 +81,7 @@ class KitchenDomain:
         return believing.ready(belief)
 
     def relocations(self, belief: KitchenBelief) -> int:
-        """How often the base was moved by others."""
+        """How often base or arm were moved by others."""
         return belief.relocated
 
     def measurement_fault(self, belief: KitchenBelief, message: Message) -> str:
