@@ -20,6 +20,7 @@ LATERAL_M = 0.12  # how far beside the spot the robot may stand
 FACING_RAD = 0.5  # how far it may look aside of the table
 SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
 ON_TOP_M = 0.06  # height above the table's top by which a cup may be misjudged
+UNSEEN_M = 0.2  # by which a table may be off the map: as far as it is displaced and turned, and as a cup is seen
 # Beyond the ranges of a stand the robot still counts as being there: more than what goToPose leaves, or it would be
 # sent again to where it has arrived.
 SLACK_M, SLACK_RAD = 0.07, 0.25
@@ -118,20 +119,26 @@ def stands_before(belief: KitchenBelief, spot: Spot) -> bool:
 
 
 def place_of(belief: KitchenBelief, scenario: Scenario, cup: Thing) -> str | None:
-    """Label of the place at which a cup stands upright: the nearest one of its table. None: at none."""
+    """Label of the place at which a cup stands upright: the nearest one of its table. None: at none.
+
+    Before its table is seen, a cup near it stands on it, and at the place that the map gives it.
+    """
     size = kitchen()
     if cup.tilt > size.cup.tipped_rad or abs(cup.z - size.table.size[2] - size.cup.height / 2) > ON_TOP_M:
         return None
     near = []
     for label, (name, _) in spots(scenario).items():
-        if _on_top(cup, table_place(belief, name)):
+        unseen = belief.thing(name) is None
+        if _on_top(cup, table_place(belief, name), UNSEEN_M if unseen else 0.0):
+            if unseen and label == mapped_label(scenario, cup.name):
+                return label
             spot = spot_of(belief, scenario, label)
             near.append((math.hypot(cup.x - spot.x, cup.y - spot.y), label))
     return min(near)[1] if near else None
 
 
-def _on_top(cup: Thing, table: Place) -> bool:
+def _on_top(cup: Thing, table: Place, beside_m: float) -> bool:
     c, s = math.cos(table[2]), math.sin(table[2])
     dx, dy = cup.x - table[0], cup.y - table[1]
     deep, wide, _ = kitchen().table.size
-    return abs(c * dx + s * dy) < deep / 2 and abs(c * dy - s * dx) < wide / 2
+    return abs(c * dx + s * dy) < deep / 2 + beside_m and abs(c * dy - s * dx) < wide / 2 + beside_m

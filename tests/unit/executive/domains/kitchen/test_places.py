@@ -108,6 +108,30 @@ def test_a_cup_on_the_floor_or_tipped_is_nowhere(lost):
     assert not any(fact[0] in ("cup-at", "holding") for fact in facts)
 
 
+@pytest.mark.parametrize(("moved", "spots"), [((0.12, 0.12, 0.12), (0, 1)), ((-0.12, -0.22, -0.12), (0, 1))])
+def test_cups_on_a_table_that_is_not_seen_yet_are_where_the_map_has_them(moved, spots):
+    """Not beside its outline on the map, at no place, nor both at one place: the task was given up as unsolvable."""
+    x, y, phi = kitchen().tables["table1"]
+    table = (x + moved[0], y + moved[1], phi + moved[2])
+    cups = [cup(*on_table(table, *kitchen().table.slots[k])[:2], name=f"cup{k + 1}") for k in spots]
+    belief = KitchenBelief(pose=Pose(0.0, 0.6, 0.0, EXACT), things=tuple(cups), poses_seen=9, joints_ns=1)
+    facts = abstract_state.anchor(belief, scenario("two-cups"), frozenset())
+    assert {("cup-at", "cup1", "left1"), ("cup-at", "cup2", "right1")} <= facts
+
+
+def test_a_cup_elsewhere_is_on_no_table_whether_that_is_seen_or_not():
+    beside = cup(*on_table(kitchen().tables["table1"], 0.56, 0.2)[:2])
+    unseen = KitchenBelief(pose=Pose(0.0, 0.6, 0.0, EXACT), things=(beside,), poses_seen=9, joints_ns=1)
+    off = cup(*on_table1(x=0.36))
+    for belief in (unseen, believed(off)):
+        assert not any(fact[0] == "cup-at" for fact in anchored(belief))
+
+
+def test_a_cup_that_stands_at_another_table_is_there_although_that_is_not_seen():
+    moved = cup(*on_table(kitchen().tables["table2"], 0.3, 0.25)[:2])
+    assert ("cup-at", "cup1", "table2") in anchored(believed(moved))
+
+
 def test_a_cup_lost_on_the_way_is_looked_for_where_the_map_has_it():
     lost = KitchenBelief(pose=Pose(0.0, 0.0, 0.0, EXACT), poses_seen=9, joints_ns=1)
     facts = abstract_state.anchor(lost, scenario(), frozenset({("robot-at", "dock"), ("holding", "cup1")}))
