@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from tailor.executive.core.travel import Travel, travelled
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.messages import JointState, Message, Odometry, PoseEstimate, Sample, VelocityCommand
@@ -31,10 +32,12 @@ class Measurements:
     Attributes:
       joints: Names in the first measurement; those of another sender, e.g. of a driver after its restart, are the same.
       faults: Why the newest message is no measurement; keys whose newest message is one are left out.
+      travel: Of a base that is commanded by velocities: its way, by poses and by odometry.
     """
 
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
+    travel: Travel = field(default_factory=Travel)
 
 
 def without_faulty(
@@ -51,16 +54,19 @@ def without_faulty(
       fastest: Speeds that odometry may have; None: any.
       judge: Why the robot's domain takes a message for none; empty: it does not.
     """
-    joints, faults, kept = dict(known.joints), dict(known.faults), []
+    joints, faults, travel, kept = dict(known.joints), dict(known.faults), known.travel, []
     for sample in samples:
         faults.pop(sample.key, None)
-        if fault := _fault(sample.message, joints.get(sample.key, ()), fastest) or judge(sample.message):
+        fault = _fault(sample.message, joints.get(sample.key, ()), fastest) or judge(sample.message)
+        if not fault and fastest is not None:
+            travel, fault = travelled(travel, sample.arrival_ns, sample.message)
+        if fault:
             faults[sample.key] = fault
             continue
         if isinstance(sample.message, JointState):
             joints.setdefault(sample.key, sample.message.names)
         kept.append(sample)
-    return Measurements(joints, faults), tuple(kept)
+    return Measurements(joints, faults, travel), tuple(kept)
 
 
 def fastest_of(domain: Domain) -> Speeds | None:
