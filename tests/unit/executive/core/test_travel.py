@@ -11,7 +11,6 @@ from tailor.executive.core.measurements import Measurements, without_faulty
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 
 TICK_NS = 100_000_000
-KEYS = {"agilo/odom", "agilo/pose"}
 
 
 def faults(speeds, places, omega=0.0, sigma_m=0.0, fastest=(2.0, 2.0), every=1, until=999):
@@ -20,9 +19,8 @@ def faults(speeds, places, omega=0.0, sigma_m=0.0, fastest=(2.0, 2.0), every=1, 
     for n, (speed, (x, y)) in enumerate(zip(speeds, places, strict=True)):
         odometry = Sample("agilo/odom", Odometry(0, 0.0, 0.0, 0.0, speed, omega), n * TICK_NS, n)
         pose = Sample("agilo/pose", PoseEstimate(0, x, y, 0.0, sigma_m**2, sigma_m**2, 0.01), n * TICK_NS, n)
-        known, _ = without_faulty(
-            known, KEYS, (pose, odometry) if n % every == 0 and n < until else (odometry,), fastest
-        )
+        samples = (pose, odometry) if n % every == 0 and n < until else (odometry,)
+        known, _ = without_faulty(known, samples, fastest)
         found.append(known.faults.get("agilo/odom", ""))
     return found
 
