@@ -11,6 +11,24 @@ from tailor.tools.learning.recipe import Recipe
 from tailor.tools.lockstep.bodies import check_profile
 
 
+def learned_beside(domain: str) -> list[str]:
+    """Actions of a domain that need a model of their own success beside an object."""
+    declared = domains.load(domain).actions
+    contexts = {action: declared[action].context for action in run_data_sets.modelled_actions(domain)}
+    return [name for name, context in contexts.items() if context and context.success_model.startswith(f"{name}/")]
+
+
+def check_objects(robot: str, recipe: Recipe) -> None:
+    """Check that rounds have the models beside objects that the executive chooses by.
+
+    Raises:
+      UsageError: The recipe gathers nothing beside objects.
+    """
+    needed = learned_beside(random_episodes.domain_of(robot)) if recipe.rounds else []
+    if needed and not recipe.beside:
+        raise UsageError(f"recipe: beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")
+
+
 def check_recipe(robot: str, recipe: Recipe) -> None:
     """Check the names in a recipe: of the profile, actions and scenarios.
 

@@ -97,6 +97,14 @@ examples:
 """
 
 
+HELP_OF_ALL = """\
+usage: tailor evaluate all [--report DIR [--resume]] [...]
+
+Run {names}.
+Each takes the flags that it has; `tailor evaluate NAME --help` lists them.
+With --domain, those of another domain are left out."""
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments; each evaluation declares its own flags."""
     width = max(map(len, EVALUATIONS))
@@ -111,6 +119,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Run each evaluation; returns the maximum of their exit codes."""
     names, flags = _names_and_flags(arguments.words)
     everything = ALL in arguments.words[:1]
+    if everything and {"-h", "--help"} & set(flags):
+        print(HELP_OF_ALL.format(names=", ".join(names)))
+        return 0
     chosen = _chosen(
         names, [flag for flag in flags if flag != RESUME], everything
     )  # raises on a wrong flag before anything runs

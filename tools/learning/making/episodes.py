@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from tailor.executive import domains
 from tailor.tools.learning.gathering import policy_runs, random_episodes, run_data_sets
 from tailor.tools.learning.gathering.active_episodes import Active, run_active
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.recipe import Round
+from tailor.tools.learning.recipe_checks import learned_beside
 from tailor.tools.parallel.steps import Step, counted
 
 
@@ -45,13 +45,8 @@ def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterato
 
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
     """Data sets of random episodes: action, number, folder, and whether each is beside an object."""
-    recipe, declared = making.recipe, domains.load(making.domain).actions
-    actions = run_data_sets.modelled_actions(making.domain)
+    recipe, actions = making.recipe, run_data_sets.modelled_actions(making.domain)
     wanted = [(action, recipe.episodes_of(action), making.random, False) for action in actions]
     if recipe.beside:
-        contexts = {action: declared[action].context for action in actions}
-        near = [
-            action for action, context in contexts.items() if context and context.success_model.startswith(f"{action}/")
-        ]
-        wanted += [(action, recipe.beside, making.beside, True) for action in near]
+        wanted += [(action, recipe.beside, making.beside, True) for action in learned_beside(making.domain)]
     return wanted

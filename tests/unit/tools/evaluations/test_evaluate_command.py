@@ -84,6 +84,13 @@ def test_a_page_that_was_broken_off_is_made_again(tmp_path, capsys):
     assert CALLS == ["first", "first"]
 
 
+def test_help_of_the_lot_names_all_of_it(capsys):
+    assert main(["evaluate", "all", "--help"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("usage: tailor evaluate all")
+    assert "Run first, second, third." in printed
+
+
 def test_the_lot_takes_flags_that_some_evaluation_knows(capsys):
     assert main(["evaluate", "all", "--episodes", "2", "--jobs=1"]) == 2  # the third's refusal
     assert CALLS == ["first", "second", "third"]

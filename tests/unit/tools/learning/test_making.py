@@ -186,6 +186,7 @@ def test_a_recipe_that_is_not_utf_8_is_refused(tmp_path: Path) -> None:
         ("agilo", "[training]\nfeatures = 'nope'", "no feature space 'nope'"),
         ("agilo", "[training]\nfeatures = 'joints'", "approachBall: arguments are x y phi v xg"),
         ("powercube", ROUND.format("'nope'"), "no scenario"),
+        ("agilo", ROUND.format("'approach'"), "beside is 0, expected runs of goToPose beside objects"),
     ],
 )
 def test_names_in_a_recipe_are_checked_before_anything_is_gathered(
