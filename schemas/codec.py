@@ -45,7 +45,7 @@ def encode(message: Message) -> bytes:
     """The CDR bytes of a message.
 
     Raises:
-      struct.error: An integer does not fit its ROS type; a mistake of the caller.
+      struct.error: A stamp or an integer does not fit its ROS type; a mistake of the caller.
     """
     kind: Any = type(message)
     write, _, name = _codec(kind)

@@ -22,8 +22,9 @@ def _classes() -> tuple[Any, Any]:
 
 
 def wrapped_ns(stamp_ns: int) -> int:
-    """The stamp that ROS can hold instead of this one: the same unless it is beyond 0 to MAX_STAMP_NS."""
-    return stamp_ns % (MAX_STAMP_NS + 1)
+    """The stamp that ROS can hold instead of this one, for a clock up to the year 2105: the bus knows none beyond."""
+    beyond_ns = stamp_ns - (MAX_STAMP_NS + 1)
+    return beyond_ns if 0 <= beyond_ns <= MAX_STAMP_NS else stamp_ns
 
 
 def time(stamp_ns: int) -> Any:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from tailor.schemas.services import MAX_REQUEST_BYTES
+
 
 class ServiceRequest:
     """Request of a client; call `accept` or `refuse` exactly once."""
@@ -46,6 +48,11 @@ class QueryableSource:
         if query is None:
             return None
         if str(query.key_expr) != str(self._queryable.key_expr):
+            query.drop()
+            return None
+        length = max(len(part) for part in (query.payload or b"", query.attachment or b""))
+        if length > MAX_REQUEST_BYTES:  # unread: to decode 400 MB takes a second of the loop that serves it
+            query.reply_err(f"the request has {length} bytes, expected at most {MAX_REQUEST_BYTES}")
             query.drop()
             return None
         return self._read(query)

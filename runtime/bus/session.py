@@ -18,7 +18,7 @@ from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
 from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
-from tailor.runtime.bus.wires import RingSource, Subscriptions, Wire, raw_of, received_raw
+from tailor.runtime.bus.wires import MAX_PLAIN_BYTES, RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
@@ -130,11 +130,12 @@ class Session:
     def plain_source(self, key: str) -> Source:
         """Raw messages of one topic of such a robot; the newest few between two looks."""
         self._announce_key(Kind.SUBSCRIPTION, key)
-        return self._ring(key)
+        return self._ring(key, MAX_PLAIN_BYTES)
 
     def raw_sources(self, name: str, robot: str) -> list[Source]:
         """Raw messages of a topic of ours, one source for each of its keys in this session's profile."""
-        return [self._ring(each) for each, _ in self._keys_of(TOPICS[name], key_of(name, robot))]
+        topic = TOPICS[name]
+        return [self._ring(each, topic.max_bytes) for each, _ in self._keys_of(topic, key_of(name, robot))]
 
     def graph_view(self, domain: int) -> GraphView:
         """What ROS 2 nodes of a domain announce, from now on and as long as the session lives."""
@@ -166,20 +167,21 @@ class Session:
         for name in names:
             topic, key = TOPICS[name], key_of(name, robot)
             for each, _ in self._keys_of(topic, key):
-                source = self._latch(topic, key, each) if name == "estop" else self._ring(each)
+                source = self._latch(topic, key, each) if name == "estop" else self._ring(each, topic.max_bytes)
                 subscriptions.append((topic, key, source))
             if self.keys.announces:
                 self._graph.announce(Kind.SUBSCRIPTION, ros_topic(topic, robot), self.keys.domain)
         return Inbox(subscriptions, time.monotonic_ns, newest_only=newest_only)
 
-    def _ring(self, key: str) -> Source:
-        return RingSource(self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH)), self.keys)
+    def _ring(self, key: str, max_bytes: int) -> Source:
+        ring = self._zenoh.declare_subscriber(key, zenoh.handlers.RingChannel(EVENT_DEPTH))
+        return RingSource(ring, self.keys, max_bytes)
 
     def _latch(self, topic: Topic, key: str, at: str) -> Source:
         latch = EStopLatch(topic, key)
 
         def offer(sample: zenoh.Sample) -> None:
-            raw = as_plain(raw_of(sample), self.keys)
+            raw = as_plain(raw_of(sample, topic.max_bytes), self.keys)
             if raw is not None:
                 latch.offer(raw)
 

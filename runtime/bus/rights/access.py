@@ -12,13 +12,12 @@ from typing import Any
 from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, service_keys, tokens
 from tailor.schemas.messages import EStop
 from tailor.schemas.ros2.profiles import ros_patterns
-from tailor.schemas.services import ROLES, SERVICES, Role
+from tailor.schemas.services import MAX_REQUEST_BYTES, ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
 
 GATEWAY = "gateway"  # user name of the process that listens for other machines; it has applied these rules already
 PEER_LIMIT_HZ = 1000.0  # e-stops of one peer; a flood brings 50 000
 LOCAL_LIMIT_HZ = 5000.0  # of all peers behind one gateway together
-MAX_REQUEST_BYTES = 65_536  # of a service
 _PUBLISHERS: dict[Source, tuple[Role, ...]] = {
     "executive": ("executive", "player"),
     "driver": ("driver", "player"),
