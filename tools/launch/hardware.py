@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.loading import load_hardware
@@ -31,8 +32,11 @@ def hardware_of(named: str, endpoint: str) -> Hardware:
 
 
 def _check_commands(file: str, robot: str) -> None:
-    """Raise UsageError if a robot obeys other commands: a twist would carry the speeds of its joints, or lack some."""
-    commands = shipped_driver_spec(robot).command_topics
+    """Raise UsageError if a robot obeys other commands: a twist would carry the speeds of its joints, or lack some.
+
+    One that is not installed is refused by whoever knows which robot was expected.
+    """
+    commands = shipped_driver_spec(robot).command_topics if robot in robot_names() else ("cmd_vel",)
     if commands != ("cmd_vel",):
         raise UsageError(
             f"{file}: {robot} obeys {', '.join(commands)}, but plain topics carry cmd_vel alone; expected "

@@ -9,7 +9,6 @@ ELSEWHERE = '[bus]\nconnect = "tcp/192.0.2.1:7447"\n'
 REFUSED = {
     "b21": "b21 obeys cmd_vel, joint_cmd, gripper_cmd, but plain topics carry cmd_vel alone",
     "powercube": "powercube obeys joint_cmd, but plain topics carry cmd_vel alone",
-    "nobody": "no robot 'nobody'",
 }
 
 
@@ -21,7 +20,8 @@ def test_a_robot_that_obeys_other_commands_is_refused(tmp_path, robot):
         hardware_of(str(file), "tcp/127.0.0.1:7447")
 
 
-def test_a_robot_that_obeys_cmd_vel_is_driven_by_plain_topics(tmp_path):
+@pytest.mark.parametrize("robot", ["agilo", "nobody"])
+def test_one_that_obeys_cmd_vel_is_not_nor_one_whose_commands_nobody_knows_yet(tmp_path, robot):
     file = tmp_path / "robot.toml"
-    file.write_text(f'robot = "agilo"\n{ELSEWHERE}')
-    assert hardware_of(str(file), "tcp/127.0.0.1:7447").robot == "agilo"
+    file.write_text(f'robot = "{robot}"\n{ELSEWHERE}')
+    assert hardware_of(str(file), "tcp/127.0.0.1:7447").robot == robot
