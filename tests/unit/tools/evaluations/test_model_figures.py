@@ -70,3 +70,13 @@ def test_tasks_without_noise_leave_a_ratio_to_the_floor():
     ratio, (low, high) = floors._ratio(off_s, floor_s, np.random.default_rng(1))
     assert ratio == pytest.approx(4.0)
     assert 1.0 <= low <= high < np.inf
+
+
+def test_a_ratio_is_known_as_soon_as_some_task_has_noise(monkeypatch):
+    episodes = tuple(Episode(number, np.zeros(1), np.zeros((2, 1)), 0.1, True, "") for number in range(4))
+    data = DataSet({"arguments": []}, episodes, "")
+    row = {"predicted_s": np.full(4, 0.3), "observed_s": np.full(4, 0.1)}
+    for floor_s, expected in (([0.0, 0.0, 0.0, 0.1], 8.0), ([0.0] * 4, None)):
+        monkeypatch.setattr(floors, "noise_floor", lambda *_, floor_s=floor_s: (np.array(floor_s), np.ones(4)))
+        ratio = floors.floor_columns(row, data, ("r", "a", 1, 1)).get("over_floor")
+        assert ratio == (expected and pytest.approx(expected))
