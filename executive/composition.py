@@ -120,8 +120,8 @@ def rebuild_context(recorded: Mapping[str, Any], load: ModelLoader | None = None
     context = build_context(config, recorded["sender"], recorded["stamp_offset_ns"], load)
     driver_sender, required = str(recorded.get("driver_sender", "")), recorded.get("required", {})  # newer than others
     names = {name: key_of(name, context.domain.robot) for name in context.domain.required}
-    rates_hz = {name: float(required[key]) for name, key in names.items() if key in required}
-    rates_hz = {**context.sensor_rates_hz, **rates_hz}
+    recorded_hz = {name: float(required[key]) for name, key in names.items() if key in required}
+    rates_hz = {**context.sensor_rates_hz, **recorded_hz}
     context = dataclasses.replace(context, driver_sender=driver_sender, sensor_rates_hz=rates_hz)
     here = provenance(config, context)["models"]
     for name, sha256 in recorded["models"].items():

@@ -5,11 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from tailor.executive.core.freshness import MAX_ROUND_TRIP_NS, echo_age_ns, is_stale, newest_arrivals, stale_topics
-from tailor.executive.core.measurements import fastest_of, without_faulty
 from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.sensing.freshness import (
+    MAX_ROUND_TRIP_NS,
+    echo_age_ns,
+    is_stale,
+    newest_arrivals,
+    stale_topics,
+)
+from tailor.executive.core.sensing.measurements import fastest_of, without_faulty
+from tailor.executive.core.sensing.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
-from tailor.executive.core.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.domain import measurement_fault, relocations
 from tailor.executive.interfaces.reasons import Cause, Reason

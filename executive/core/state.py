@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from tailor.executive.core.execution import Running
-from tailor.executive.core.measurements import Measurements
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.streams import Stream
+from tailor.executive.core.sensing.measurements import Measurements
+from tailor.executive.core.sensing.streams import Stream
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
 from tailor.executive.deliberation.plan_reuse import Preparation

@@ -180,7 +180,7 @@ def relocations(domain: Domain, belief: Belief) -> int:
 def measurement_fault(domain: Domain, belief: Belief, message: Message) -> str:
     """Why a message of a sensor is no measurement; empty if it is one, or for a domain without such a method.
 
-    The belief does not get such a message, and its topic does not stay fresh by it..
+    The belief does not get such a message, and its topic does not stay fresh by it.
     """
     judge = getattr(domain, "measurement_fault", None)
     return "" if judge is None else str(judge(belief, message))

@@ -71,10 +71,10 @@ def raw_of(sample: zenoh.Sample, max_bytes: int | None = None) -> Raw:
     first. Copying 200 MB takes a tick.
     """
     attachment, payload = sample.attachment, sample.payload
-    fits = max_bytes is None or len(payload) <= max_bytes
+    most = len(payload) if max_bytes is None else max_bytes
     return Raw(
         key=str(sample.key_expr),
-        payload=payload.to_bytes() if fits or max_bytes is None else bytes(max_bytes + 1),
+        payload=payload.to_bytes() if len(payload) <= most else bytes(most + 1),
         attachment=None if attachment is None else attachment.to_bytes(),
         encoding=str(sample.encoding),
         is_put=sample.kind == zenoh.SampleKind.PUT,

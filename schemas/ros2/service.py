@@ -9,13 +9,12 @@ from tailor.schemas.codec import MAX_TRAILING_BYTES, damage
 from tailor.schemas.errors import DecodeRefusal, Rejected
 from tailor.schemas.packages.ros_names import PACKAGE
 from tailor.schemas.ros2.graph import Named
-from tailor.schemas.services import SERVICES
+from tailor.schemas.services import MAX_REQUEST_BYTES, SERVICES
 from tailor.schemas.typesystem import add_service, from_bytes, hash_of, ros_class, to_bytes
 
 SET_GOAL = f"{PACKAGE}/srv/SetGoal"
 REQUEST = "string goal  # in PDDL, e.g. (atball pos3); empty: the goal of the scenario"
 RESPONSE = "bool accepted\nstring message  # the cause, if it was refused"
-MAX_BYTES = 65_536  # of a request
 
 
 def text() -> str:
@@ -67,7 +66,7 @@ def result_of(data: bytes) -> tuple[bool, str] | Rejected:
 
 def _read(data: bytes, name: str) -> Any:
     set_goal_hash()
-    if len(data) > MAX_BYTES:
+    if len(data) > MAX_REQUEST_BYTES:
         return Rejected(DecodeRefusal.TOO_LONG.value)
     try:
         value, left = from_bytes(data, name)

@@ -7,9 +7,9 @@ import dataclasses
 import pytest
 
 from tailor.executive.core.modes import Mode
+from tailor.executive.core.sensing.streams import slow_topics, with_samples
 from tailor.executive.core.state import Inputs
 from tailor.executive.core.step import step
-from tailor.executive.core.streams import slow_topics, with_samples
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import ActionFinished, Odometry, Sample

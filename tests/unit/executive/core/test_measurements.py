@@ -8,9 +8,9 @@ import math
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.core.measurements import Measurements, fastest_of, without_faulty
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import perceive
+from tailor.executive.core.sensing.measurements import Measurements, fastest_of, without_faulty
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.interfaces.domain import Axis
 from tailor.executive.interfaces.reasons import Cause, Reason

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from tailor.executive.core.freshness import MAX_ROUND_TRIP_NS, echo_age_ns
 from tailor.executive.core.modes import Mode
+from tailor.executive.core.sensing.freshness import MAX_ROUND_TRIP_NS, echo_age_ns
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tailor.executive.core.freshness import newest_arrivals, stale_topics
+from tailor.executive.core.sensing.freshness import newest_arrivals, stale_topics
 from tests.support.toy_domain import odometry
 
 MS = 1_000_000

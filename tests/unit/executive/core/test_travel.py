@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tailor.executive.core.measurements import Measurements, without_faulty
+from tailor.executive.core.sensing.measurements import Measurements, without_faulty
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 
 TICK_NS = 100_000_000

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.core.travel import Travel, travelled
+from tailor.executive.core.sensing.travel import Travel, travelled
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.messages import JointState, Message, Odometry, PoseEstimate, Sample, VelocityCommand

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tailor.executive.core.freshness import is_stale
+from tailor.executive.core.sensing.freshness import is_stale
 from tailor.schemas.messages import Sample
 from tailor.schemas.topics import key_of
 
