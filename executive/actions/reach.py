@@ -1,6 +1,7 @@
 """reach: move joints to a waypoint and pass it with given velocities. Knows no letters, and counts no joints.
 
-Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, then of each joint at the goal.
+Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, then of each joint at the goal. What follows
+is for the models.
 """
 
 from __future__ import annotations
@@ -70,7 +71,8 @@ class Reach:
         It is done one period before the waypoint, with the command that leads there: when the next action takes over,
         the arm is where it was to be, as fast as it was to be.
         """
-        goal = tuple(arguments[len(arguments) // 2 :].tolist())
+        state_size = 2 * len(belief.angles)
+        goal = tuple(arguments[state_size : 2 * state_size].tolist())
         motion = state if isinstance(state, Motion) and state.goal == goal else self._begin(goal, now_ns, belief)
         if self._off_rad(motion, now_ns, belief) > self.strayed_rad:
             motion = self._begin(goal, now_ns, belief)

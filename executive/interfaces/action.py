@@ -80,7 +80,7 @@ class Parameter:
       name: Unique within the action.
       argument: Index of the PDDL argument whose label the parameter refines (Algorithm 2, line 8).
       quantity: Quantity of that label, e.g. "x" or "phi"; Domain.value is queried for it.
-      unit: "m", "rad", "m/s", "rad/s"; "m" marks a place.
+      unit: "m", "rad", "m/s", "rad/s", "1"; "m" marks a place.
       lower: Lower end of the default range.
       upper: Upper end of the default range.
       periodic: Whether the ends of the default range are the same value.

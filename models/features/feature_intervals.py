@@ -55,7 +55,7 @@ def _projective_periodic(columns: Spans) -> tuple[Case, ...]:
 
 
 def _joints(columns: Spans) -> tuple[Case, ...]:
-    a, wa, b, wb, ag, wag, bg, wbg = columns
+    a, wa, b, wb, ag, wag, bg, wbg, *_ = columns
     da, db = ag - a, bg - b
     line = sight(a, b, ag, bg)
     known = length(wa, wb), length(wag, wbg), length(da, db)
@@ -65,7 +65,7 @@ def _joints(columns: Spans) -> tuple[Case, ...]:
 
 
 def _joints_relative(columns: Spans) -> tuple[Case, ...]:
-    a, wa, b, wb, ag, wag, bg, wbg = columns
+    a, wa, b, wb, ag, wag, bg, wbg, *_ = columns
     da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
     return (Case((a, b, da, db, wa, wb, wag, wbg)),)
 

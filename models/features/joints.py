@@ -1,4 +1,7 @@
-"""Feature spaces of two joints (Table 7): from angles and velocities to angles and velocities."""
+"""Feature spaces of two joints (Table 7): from angles and velocities to angles and velocities.
+
+Friction of the gears, a multiple of the nominal, goes only into the space that the arm's own models use.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from tailor.models.features.features import (
     wrap,
 )
 
-JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s")
+JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s fa:1 fb:1")
 
 
 def _joints(rows: Rows, ops: Operations) -> Rows:
@@ -41,7 +44,7 @@ def _joints_lifted(rows: Rows, ops: Operations) -> Rows:
     along_g, across_g = ca * vag + cb * vbg, ca * vbg - cb * vag
     # a mirrored pan is the same motion: the sign of what is across changes with it
     mirrored = tuple(ops.where(da < 0.0, row * -1.0, row) for row in (across, across_g))
-    return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1])
+    return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1], rows[[8, 9]])
 
 
 joints = FeatureSpace("joints", JOINTS, quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints)
@@ -54,7 +57,7 @@ joints_relative = FeatureSpace(  # for quantities that depend on the joint posit
 joints_lifted = FeatureSpace(  # for what depends on gravity at the lift: invariant to turning and mirroring the pan
     "joints-lifted",
     JOINTS,
-    quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s"),
+    quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s fa:1 fb:1"),
     _joints_lifted,
 )
 SPACES = (joints_lifted, joints, joints_relative)  # the first is the default

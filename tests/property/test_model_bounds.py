@@ -181,7 +181,7 @@ def test_bounds_within_a_part_are_those_of_the_whole_model_there(space, seed):
     rng = np.random.default_rng(seed)
     model = Trees.random(seed, space, 3)
     lower, upper = box(space, rng)
-    corners = np.sort(rng.uniform(lower, upper, (2, 8)), axis=0)
+    corners = np.sort(rng.uniform(lower, upper, (2, len(lower))), axis=0)
     whole, part = (
         [tuple(np.full(SHAPE, value) for value in end) for end in ends] for ends in ((lower, upper), corners)
     )

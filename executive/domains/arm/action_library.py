@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from tailor.executive.actions.reach import Reach
-from tailor.executive.domains.arm.load import accelerations
+from tailor.executive.domains.arm.load import TRAINED_FRICTION, accelerations
+from tailor.executive.domains.arm.predicates import FRICTIONS
 from tailor.executive.domains.arm.robot import V_MAX_RADPS
 from tailor.executive.interfaces.action import Action, Parameter
 
@@ -35,9 +36,12 @@ def _state(suffix: str, argument: int) -> tuple[Parameter, ...]:
     )
 
 
+# of a gear as a multiple of the nominal: what the executive observes on the way, so models need not average over it
+FRICTION = tuple(Parameter(name, 0, name, "1", *TRAINED_FRICTION) for name in FRICTIONS)
+
 REACH = Action(
     "reach",
-    (*_state("", 0), *_state("g", 1)),
+    (*_state("", 0), *_state("g", 1), *FRICTION),
     Reach(accelerations, ACCELERATION_MAX_RADPS2, 0.96 * V_MAX_RADPS),  # the rest is for feedback
     "reach/duration",
 )

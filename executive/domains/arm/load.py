@@ -15,6 +15,7 @@ ROTOR_KGM2, LINK_KGM2 = 0.34, 1.32  # of the stretched arm about either joint
 COULOMB_NM, LOAD_FRICTION, VISCOUS_NMS = 4.0, 0.07, 5.0  # of a gear at 30 °C
 TYPICAL_RADPS = 0.7  # largest speed of a middling reach
 FULL_WAY_RAD = 0.2  # a joint that moves less far meets its friction in both directions
+TRAINED_FRICTION = (0.6, 1.8)  # what models are asked for; gears between 10 and 70 °C have it
 LEARNING_RADPS = 0.15  # slower joints reveal no friction
 
 

@@ -36,7 +36,7 @@ REMARKS = (
     "each mode against stopping at each waypoint, against greedy by the learned model and against greedy by the "
     "simulator's own outcome; 95 % interval: over letters, the mean of a letter's seeds counts once; energy and "
     "arrival with the difference to learned greedy",
-    "an oracle chooses by the controller's own rule, averaged over temperatures; all ahead is the ceiling",
+    "an oracle chooses by the controller's own rule; all ahead is the ceiling",
 )
 SHOWN = "FTAS"  # in the picture
 

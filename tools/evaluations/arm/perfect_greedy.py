@@ -1,4 +1,7 @@
-"""Greedy by the simulator's own outcome: at each waypoint the velocities with which the reach to it took the least."""
+"""Greedy by the simulator's own outcome: at each waypoint the velocities with which the reach to it took the least.
+
+It knows the friction of the gears as they are at the letter's start, from its first reach on.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,14 @@ from tailor.executive import domains
 from tailor.executive.domains.arm.letters import Point
 from tailor.executive.interfaces.values import Array
 from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.simnodes.world import World
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.lockstep.action_run import TIME_LIMIT_S, run_action
+from tailor.tools.lockstep.samplers.arm import observed_friction
 
 GRID = 9  # velocities of a joint, from limit to limit
 SIMULATED = 10  # choices at each waypoint: the best by the controller's rule, which is 0.06 s off
-DRAWS = 4  # runs of each choice, with other noise, temperatures and wear: a model cannot know these either
+DRAWS = 4  # runs of each choice, with other noise, wear and strength of the motors: a model cannot know these either
 HOPELESS_S = 0.4
 NOISE_STREAM = 41
 ARM = domains.load("arm")
@@ -31,6 +36,7 @@ class Leg:
     start: tuple[float, float, float, float]  # a, wa, b, wb
     waypoint: Point
     fastest: float
+    friction: tuple[float, ...]  # of each gear, a multiple of the nominal
     seed: tuple[int, int]  # of the letter, number of the leg
 
 
@@ -38,9 +44,11 @@ def greedy_velocities(letter: str, seed: int) -> tuple[Point, ...]:
     """Velocities (rad/s) at all waypoints of a letter but the last, chosen one after the other."""
     scenario, start = domains.seeded_scenario("arm", f"word-{letter}", seed)
     state, body = (start["a"], 0.0, start["b"], 0.0), PowerCubeBody()
+    World(body, start, seed)  # draws the temperatures and the wear with which this letter is written
+    friction = tuple(observed_friction(gear) for gear in body.gears)
     chosen: list[Point] = []
     for number, place in enumerate(list(scenario.places.values())[:-1]):
-        leg = Leg(state, (place["a"], place["b"]), place["fastest"], (seed, number))
+        leg = Leg(state, (place["a"], place["b"]), place["fastest"], friction, (seed, number))
         wa, wb = _fastest_choice(body, leg)
         chosen.append((wa, wb))
         state = (place["a"], wa, place["b"], wb)
@@ -87,4 +95,4 @@ def _noise(leg: Leg) -> Iterator[np.random.Generator]:
 
 def _arguments(leg: Leg, choice: Point) -> Array:
     (a, b), (wa, wb) = leg.waypoint, choice
-    return np.array([*leg.start, a, wa, b, wb])
+    return np.array([*leg.start, a, wa, b, wb, *leg.friction])

@@ -1,4 +1,4 @@
-"""Duration model of a reach from the controller's own rule, over all temperatures of the gears: for an oracle."""
+"""Duration model of a reach from the controller's own rule: for an oracle."""
 
 from __future__ import annotations
 
@@ -15,24 +15,22 @@ from tailor.executive.domains.arm.load import accelerations
 Array = NDArray[np.float64]
 STEPS = 160  # of the search, evenly spaced in the logarithm of the duration
 HALVINGS = 22
-FRICTION = (0.8, 0.95, 1.15, 1.4)  # of gears between 45 and 15 °C, as multiples of the nominal
 
 
 class PerfectReach:
-    """See `DurationModel`: the mean over temperatures, without the rounding to whole periods; its spread is 0."""
+    """See `DurationModel`: without the rounding to whole periods; its spread is 0."""
 
     card: ClassVar[dict[str, Any]] = {"sha256": "the controller itself"}
 
     def predict(self, arguments: Array) -> tuple[Array, Array]:
-        """Seconds for (a, wa, b, wb, ag, wag, bg, wbg), shape (n, 8)."""
-        durations = np.mean([_duration_s(arguments, friction) for friction in FRICTION], axis=0)
-        return durations - PERIOD_S, np.zeros(len(arguments))
+        """Seconds for (a, wa, b, wb, ag, wag, bg, wbg, fa, fb), shape (n, 10)."""
+        return _duration_s(arguments) - PERIOD_S, np.zeros(len(arguments))
 
 
-def _duration_s(arguments: Array, friction: float) -> Array:
-    """Duration of each reach with one friction for both joints, see actions.cubic; shape (n,)."""
+def _duration_s(arguments: Array) -> Array:
+    """Duration of each reach, see actions.cubic; shape (n,)."""
     rows = arguments.tolist()
-    limits = np.array([accelerations((r[0], r[2]), (r[4], r[6]), (friction, friction)) for r in rows])
+    limits = np.array([accelerations((r[0], r[2]), (r[4], r[6]), (r[8], r[9])) for r in rows])
     v0, v1 = arguments[:, [1, 3]], arguments[:, [5, 7]]
     way = arguments[:, [4, 6]] - arguments[:, [0, 2]]
     duration_s = _best_s(way, v0, v1, 1.0 / limits**2)

@@ -45,12 +45,12 @@ def region_of(card: Card) -> Region | None:
 
 
 def swept(region: Region, angle: Array) -> Array:
-    """Arguments of Figure 7, shape (n, 8), for its angles (n,) in radians."""
+    """Arguments of Figure 7, shape (n, k), for its angles (n,) in radians; gears have their nominal friction."""
     zero = np.zeros_like(angle)
     if region is POSES:
         return np.stack([zero, zero, zero, zero, zero + DIST_M, zero, angle, zero], axis=1)
     wa, wb = ARRIVING_RAD_S * np.cos(angle), ARRIVING_RAD_S * np.sin(angle)
-    return np.stack([zero, zero, zero, zero, zero + STEP_RAD, wa, zero, wb], axis=1)
+    return np.stack([zero, zero, zero, zero, zero + STEP_RAD, wa, zero, wb, zero + 1.0, zero + 1.0], axis=1)
 
 
 def error_by_region(figure: Any, model: OnnxDuration, rows: Examples, region: Region) -> None:

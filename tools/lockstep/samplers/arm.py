@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,30 +12,32 @@ from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.load import COULOMB_NM, TYPICAL_RADPS, VISCOUS_NMS
-from tailor.executive.domains.arm.predicates import named
+from tailor.executive.domains.arm.predicates import frictions, named
 from tailor.executive.domains.arm.robot import JOINTS
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, JointState, Message
-from tailor.simnodes.powercube.gear import Gear
+from tailor.simnodes.powercube.gear import NOMINAL_C, Gear
 from tailor.simnodes.powercube.physical_parameters import PhysicalParameters
 from tailor.tools.lockstep.samplers.drive_work import joint_work_j
 
 STATE = ("a", "wa", "b", "wb")
 WA, WB, WAG, WBG = 1, 3, 5, 7
 A, B, AG, BG = 0, 2, 4, 6
+FRICTION = slice(8, 10)
 AT_REST = 0.2  # share of reaches that start at rest, and of those that end at rest: every stroke has both
 ANGLE_STD_RAD, VELOCITY_STD_RADPS, FRICTION_STD = 0.0007, 0.008, 0.05  # of the belief
 PARAMETERS = PhysicalParameters()
+THINNEST = 0.05  # grease of a gear at 90 °C, as a multiple of the nominal viscosity: none is hotter
 DISTANCE_RAD = (0.05, 2.2)  # uniform: sampling in a rectangle yields few short reaches, and words need many
 
 
 @dataclass(frozen=True, slots=True)
 class ArmSampler:
-    """See task_sampler.TaskSampler; controller arguments are (a, wa, b, wb, ag, wag, bg, wbg)."""
+    """See task_sampler.TaskSampler; arguments are (a, wa, b, wb, ag, wag, bg, wbg, fa, fb)."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments, shape (8,): uniform, velocities scaled to the distance, some at rest."""
+        """Arguments, shape (10,): uniform, velocities scaled to the distance, some at rest."""
         lower = np.array([p.lower for p in action.parameters])
         upper = np.array([p.upper for p in action.parameters])
         distance = rng.uniform(*DISTANCE_RAD)
@@ -52,8 +55,8 @@ class ArmSampler:
         return arguments
 
     def start(self, action: Action, arguments: Array, rng: np.random.Generator) -> dict[str, float]:
-        """Start state of the body, with the temperatures of its gears."""
-        warm = dict(zip(("ta", "tb"), rng.uniform(*PARAMETERS.temperature_c, 2).tolist(), strict=True))
+        """Start state of the body, with the temperatures at which unworn gears have that friction."""
+        warm = dict(zip(("ta", "tb"), map(_temperature_c, arguments[FRICTION].tolist()), strict=True))
         return dict(zip(STATE, arguments[: len(STATE)].tolist(), strict=True)) | warm
 
     def belief(self, start: Mapping[str, float], rng: np.random.Generator) -> ArmBelief:
@@ -66,8 +69,9 @@ class ArmSampler:
         return ArmBelief(0, (a, b), (wa, wb), 0, (start["wa"], start["wb"]), friction=tuple(friction.tolist()))
 
     def arguments_now(self, action: Action, belief: ArmBelief, arguments: Array) -> list[float]:
-        """Training example: the arguments with the believed state in place of the start."""
-        return [*named(belief.angles, belief.velocities).values(), *arguments[len(STATE) :].tolist()]
+        """Training example: the arguments with the believed state and friction in place of those of the start."""
+        state = named(belief.angles, belief.velocities)
+        return [*state.values(), *arguments[len(STATE) : FRICTION.start].tolist(), *frictions(belief.friction).values()]
 
     def work_j(self, before: Message, after: Message) -> float:
         """Work of the joints between two states, joules."""
@@ -110,9 +114,21 @@ class ArmSampler:
         return 0.0
 
 
-def _friction(temperature_c: float) -> float:
-    """Friction of an unworn gear as a multiple of the nominal, as the belief observes it."""
-    gear = Gear(PARAMETERS, COULOMB_NM, VISCOUS_NMS)
-    gear.temperature_c = temperature_c
+def observed_friction(gear: Gear) -> float:
+    """Friction of a gear that carries nothing as a multiple of the nominal, as the belief observes it."""
     dry_nm, viscous_nms = gear.friction(0.0)
     return (dry_nm + viscous_nms * TYPICAL_RADPS) / (COULOMB_NM + VISCOUS_NMS * TYPICAL_RADPS)
+
+
+def _friction(temperature_c: float) -> float:
+    """Friction of an unworn gear, see `observed_friction`."""
+    gear = Gear(PARAMETERS, COULOMB_NM, VISCOUS_NMS)
+    gear.temperature_c = temperature_c
+    return observed_friction(gear)
+
+
+def _temperature_c(friction: float) -> float:
+    """The inverse of `_friction`."""
+    viscous_nm = VISCOUS_NMS * TYPICAL_RADPS
+    thinner = (friction * (COULOMB_NM + viscous_nm) - COULOMB_NM) / viscous_nm
+    return NOMINAL_C - PARAMETERS.viscosity_fall_k * math.log(max(thinner, THINNEST))

@@ -189,3 +189,13 @@ def test_the_executives_limits_are_the_drivers():
     assert declared.axes == tuple(axis.name for axis in ARM.axes)
     assert [(limit.lower, limit.upper) for limit in declared.limits] == [(axis.lower, axis.upper) for axis in ARM.axes]
     assert PhysicalParameters().velocity_max_radps == ARM.axes[0].upper
+
+
+def test_models_get_the_friction_that_is_believed_at_every_waypoint():
+    scenario, start = load("letter-L")
+    belief = ArmBelief(0, (start["a"], start["b"]), (0.0, 0.0), 0, friction=(1.25, 9.0))
+    sequence = instantiate(planned(scenario), ARM, belief, scenario)
+    assert len(sequence.actions) > 1
+    for reach in sequence.actions:
+        friction = [sequence.variables[identifier].value for identifier in reach.variables[8:]]
+        assert friction == [1.25, loads.TRAINED_FRICTION[1]]  # within what the models were trained on
