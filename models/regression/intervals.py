@@ -98,14 +98,23 @@ def _factors(width: Array, excess: Array, kinds: Numbers, leaf_width: Array) -> 
     """Correction of each leaf, (l,), so that unseen errors are held in each third of the widths.
 
     Where kinds of episodes differ more than the features tell, the correction is that of the kind that needs most: the
-    optimiser's choices are a quarter of the episodes, and what refinement uses.
+    optimiser's choices are a quarter of the episodes, and what refinement uses. Each kind has thirds of its own, as its
+    widths are others: the widest choices would else be judged among random episodes that are as wide.
     """
+    groups = [np.ones(len(kinds), bool), *(kinds == kind for kind in np.unique(kinds))]
+    enough = [group for group in groups if group.sum() >= THIRDS * MIN_LEAF]
+    if not enough:
+        return np.full(len(leaf_width), conformal_quantile(excess, LEVEL))
+    needed = np.max([_by_thirds(width[group], excess[group], leaf_width) for group in enough], axis=0)
+    return np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
+
+
+def _by_thirds(width: Array, excess: Array, leaf_width: Array) -> Array:
+    """Correction of each leaf, (l,), by the episodes whose width is in the same third; 0 beyond all of them."""
     edges = np.quantile(width, np.arange(1, THIRDS) / THIRDS)
-    third, leaf_third = np.searchsorted(edges, width, "right"), np.searchsorted(edges, leaf_width, "right")
+    third = np.searchsorted(edges, width, "right")
     pooled = conformal_quantile(excess, LEVEL)
-    factors = np.empty(THIRDS)
-    for k in range(THIRDS):
-        some = [excess[third == k], *(excess[(third == k) & (kinds == kind)] for kind in np.unique(kinds))]
-        needed = [conformal_quantile(each, LEVEL) for each in some if len(each) >= MIN_LEAF]
-        factors[k] = max(needed, default=pooled)
-    return np.asarray(factors[leaf_third])
+    some = [excess[third == k] for k in range(THIRDS)]  # of equal widths a third may hold none
+    factors = np.array([conformal_quantile(each, LEVEL) if len(each) else pooled for each in some])
+    known = (leaf_width >= width.min()) & (leaf_width <= width.max())
+    return np.where(known, factors[np.searchsorted(edges, leaf_width, "right")], 0.0)

@@ -51,6 +51,21 @@ def test_choices_that_err_more_than_the_features_tell_are_held_as_well() -> None
     assert max(held[True]) < 87
 
 
+def test_the_widest_choices_are_held_though_random_episodes_are_wider() -> None:
+    def some(count: int, seed: int):
+        features, std, errors = heteroscedastic(count, seed)
+        chosen = np.arange(count) % 4 == 0
+        errs_more = chosen & (features[:, 0] > 0.4)
+        inside = ~chosen | (features[:, 0] < 0.5)  # choices are among the surer episodes
+        return (each[inside] for each in (features, std, np.where(errs_more, 2.0, 1) * errors, chosen))
+
+    features, std, errors, chosen = some(6000, 1)
+    intervals = fit_intervals(features, std, errors, np.arange(len(errors)), seed=1, kinds=chosen.astype(np.int64))
+    features, std, errors, chosen = some(60_000, 2)
+    lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
+    assert min(coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]) > 89
+
+
 def test_skewed_errors_have_skewed_intervals(intervals) -> None:
     assert np.median(intervals.upper / -intervals.lower) == pytest.approx((np.log(20) - 0.7) / 0.65, rel=0.25)
     assert (intervals.lower < 0).all()
