@@ -152,7 +152,7 @@ class Assertion:
         if self._needs_more_subgoals(comparison):
             return self._assert_all_subgoals()
         if cheaper:
-            self._assert_subgoal(with_subgoal(self._sequence, self._position))
+            self._assert_subgoal(with_subgoal(self._sequence, self._position).starting_from(comparison.starts))
         else:
             self._accept_risk(1.0)
         return True

@@ -11,10 +11,12 @@ import numpy as np
 
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.assertion.wide_search import WideSearch
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.selection import solver_for
+from tailor.executive.refinement.solvers.solver import Solver
 
 
 class SubgoalComparison:
@@ -47,27 +49,49 @@ class SubgoalComparison:
         end = position + 1 + len(with_subgoal.actions) - len(direct.actions)
         sides = (with_accepted_risk(direct, position, 1.0), position + 1), (with_subgoal, end)
         self._sequences = tuple(sequence for sequence, _ in sides)
-        self._objectives = []
-        self._solvers = []
-        for sequence, end in sides:
-            actions = sequence.actions[position:end]
-            objective = SequenceObjective(actions, sequence.variables, models, limited, arrival_ids)
-            self._objectives.append(objective)
-            self._solvers.append(solver_for(objective, limited, rng, objective.vectors(sequence.starts)))
+        self._objectives = [
+            SequenceObjective(sequence.actions[position:end], sequence.variables, models, limited, arrival_ids)
+            for sequence, end in sides
+        ]
+        self._settings = limited
+        self._rng = rng
+        self._wide = WideSearch(self._objectives[1], rng) if direct.actions[position].context else None
+        self._solvers: list[Solver] = []
 
     def advance(self, budget: Budget) -> bool | None:
         """Whether the sequence with the subgoal has the lower expected cost; None if the budget was spent before."""
-        direct, with_subgoal = self._solvers
+        if self._wide is not None and not self._wide.advance(budget):
+            return None
+        if not self._solvers:
+            self._begin()
         for solver in self._solvers:
             solver.advance(budget)
+        direct, with_subgoal = self._solvers
         if not (direct.finished and with_subgoal.finished):
             return None
         return with_subgoal.value < direct.value
 
+    def _begin(self) -> None:
+        """Begin both searches, among objects from the best candidates of the wide one."""
+        for objective, sequence in zip(self._objectives, self._sequences, strict=True):
+            starts = objective.vectors(sequence.starts)
+            if self._wide is not None and objective is self._objectives[1]:
+                starts = np.vstack([starts, self._wide.best])
+            self._solvers.append(solver_for(objective, self._settings, self._rng, starts))
+
     @property
     def cheaper(self) -> ActionSequence:
-        """The sequence with the lower expected cost, once both searches have finished."""
-        return self._sequences[self._index]
+        """The sequence with the lower expected cost, once both searches have finished; its best values are a start."""
+        return self._sequences[self._index].starting_from(self.starts)
+
+    @property
+    def starts(self) -> list[dict[int, float]]:
+        """Good values by variable id of the sequence with the lower expected cost, the best ones first."""
+        objective = self._objectives[self._index]
+        candidates = self._solvers[self._index].elite
+        if self._wide is not None and self._index:
+            candidates = np.vstack([candidates, self._wide.best])
+        return [objective.values(candidate) for candidate in candidates]
 
     @property
     def failure(self) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from tailor.executive.interfaces.values import Array
@@ -14,6 +16,17 @@ MIN_STEP, MAX_STEP = 0.4, 0.9  # weight of the difference, drawn for every child
 TO_BEST_SHARE = 0.8  # children that start part of the way to the best; the others start at their own parent
 
 
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """Individuals of a population, and the share of their children that are attracted to the best one.
+
+    The default ends early in one basin. A large crowd whose children mostly stay where they are covers several.
+    """
+
+    size: int = MIN_INDIVIDUALS
+    to_best_share: float = TO_BEST_SHARE
+
+
 class DifferentialEvolution(Solver):
     """Each individual competes with one child: itself, moved by the difference of two others.
 
@@ -22,15 +35,32 @@ class DifferentialEvolution(Solver):
       rng: The only source of randomness.
       seeds: Initial candidates, shape (s, d).
       limits: End of the search, in generations.
+      crowd: Population; it is larger for more than four parameters.
     """
 
-    def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array, limits: Limits) -> None:
+    def __init__(
+        self,
+        objective: Objective,
+        rng: np.random.Generator,
+        seeds: Array,
+        limits: Limits,
+        crowd: Crowd = Crowd(),
+    ) -> None:
         super().__init__(objective, rng, seeds, limits)
-        self._size = max(MIN_INDIVIDUALS, INDIVIDUALS_PER_PARAMETER * objective.ranges.count)
+        self._size = max(crowd.size, INDIVIDUALS_PER_PARAMETER * objective.ranges.count)
+        self._to_best_share = crowd.to_best_share
         self._population: Array | None = None
         self._costs = np.empty(0)
         self._periodic = np.flatnonzero(objective.ranges.periodic)
         self._period = objective.ranges.width[self._periodic]
+
+    @property
+    def elite(self) -> Array:
+        """See Solver: half of the population, so that a search that begins with it looks elsewhere, too."""
+        if self._population is None:
+            return super().elite
+        cheapest = np.argsort(self._costs, kind="stable")[: self._size // 2]
+        return self._population[cheapest[np.isfinite(self._costs[cheapest])]]
 
     def _check(self) -> None:
         if self._population is None:
@@ -56,7 +86,7 @@ class DifferentialEvolution(Solver):
         others = self._rng.integers(0, count, size=(2, count))
         step = self._rng.uniform(MIN_STEP, MAX_STEP, (count, 1))
         difference = step * self._wrap(population[others[0]] - population[others[1]])
-        to_best = (self._rng.random((count, 1)) < TO_BEST_SHARE) * step
+        to_best = (self._rng.random((count, 1)) < self._to_best_share) * step
         leader = population[int(np.argmin(self._costs))]
         mutant = population + to_best * self._wrap(leader - population) + difference
         crossed = self._rng.random((count, genes)) < CROSSOVER

@@ -82,6 +82,11 @@ class Solver:
         """Whether a larger budget would change nothing."""
         return self._idle >= self._limits.patience or self.checks >= self._limits.max_checks
 
+    @property
+    def elite(self) -> Array:
+        """The best candidates known, shape (n, d), best first; none before the first valid one."""
+        return np.empty((0, self._objective.ranges.count)) if self.best is None else self.best[None]
+
     def advance(self, budget: Budget) -> None:
         """Resume the search until the budget is spent or the search is finished."""
         while not self.finished and not budget.spent():

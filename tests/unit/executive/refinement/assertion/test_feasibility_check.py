@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
+import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.assertion import feasibility_check
@@ -30,10 +31,13 @@ class RarelyGood:
     def values(self, sample):
         return {0: float(sample[0])}
 
+    def vectors(self, starts):
+        return np.array([[start[0]] for start in starts]).reshape(-1, 1)
+
 
 def test_the_start_of_the_least_failure_is_kept_over_all_batches(monkeypatch):
     monkeypatch.setattr(feasibility_check, "SequenceObjective", RarelyGood)
-    given = cast("Any", SimpleNamespace(actions=[SimpleNamespace(risk=None, variables=())], variables=()))
+    given = cast("Any", SimpleNamespace(actions=[SimpleNamespace(risk=None, variables=())], variables=(), starts=()))
     found = 0
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -44,3 +48,14 @@ def test_the_start_of_the_least_failure_is_kept_over_all_batches(monkeypatch):
         assert all(good) if check.best_failure == RARE else not any(good)
         assert check.starts
     assert found > 10
+
+
+@pytest.mark.parametrize(("starts", "kept"), [((0.9, 0.5, 0.2, 0.5004), [0.5, 0.5004]), ((0.9, 0.2), [])])
+def test_candidates_of_an_earlier_search_within_the_limit_spare_the_draws(monkeypatch, starts, kept):
+    monkeypatch.setattr(feasibility_check, "SequenceObjective", RarelyGood)
+    action, known = SimpleNamespace(risk=0.5, variables=()), [*({0: each} for each in starts), {7: 0.5}]
+    given = cast("Any", SimpleNamespace(actions=[action], variables=(), starts=known))
+    settings = RefinementSettings(assertion_samples=1)
+    check = feasibility_check.FeasibilityCheck(given, 0, cast("Any", None), settings, np.random.default_rng(0))
+    assert check.advance(CheckBudget(1)) is (True if kept else None)
+    assert [start[0] for start in check.starts] == kept
