@@ -17,6 +17,7 @@ from tailor.executive.deliberation.plan_reuse import Preparation, reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Result
+from tailor.executive.refinement.rolling_start import begins_too_fast
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 
@@ -121,6 +122,8 @@ def _adopted(context: Context, state: State, decision: Decision, decided: bool) 
         return _redirected_if_better(context, state, running, task.decision, decision)
     if not decided:
         return state
+    if decision.sequence.actions[0].asserted and begins_too_fast(decision.sequence):
+        return halted(context, state)
     return replace(state, task=redirected(context, _with_decision(task, decision, new_plan), running, state.now_ns))
 
 

@@ -18,6 +18,7 @@ from tailor.executive.refinement.objective.choice import Choice, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.rolling_start import rolled_on
 
 MIN_GAIN_S = 0.3  # of the shortcut: less is within the errors of the models, and the robot would turn for it
 
@@ -32,7 +33,8 @@ def shortcut(
     """The course without its first subgoal, from the state of now, and the choice for it; None if it is not better.
 
     It is better if no action is likelier to fail than `p_fail_max`, and the expected cost, failures priced, is lower by
-    `MIN_GAIN_S` than that of the course as decided.
+    `MIN_GAIN_S` than that of the course as decided. A robot that is faster than its drives may begin has to be as safe
+    from where it rolls on to.
 
     Args:
       decided: Sequence whose first action leads to an asserted subgoal, and runs.
@@ -45,6 +47,9 @@ def shortcut(
     short = _predicted(straight.bind(values), models, settings)
     long = _predicted(from_here(decided.bind(values), now), models, settings)
     if short.total_s + MIN_GAIN_S >= long.total_s or max(short.failure) > settings.p_fail_max:
+        return None
+    rolled = rolled_on(straight)
+    if rolled is not None and max(_predicted(rolled.bind(values), models, settings).failure) > settings.p_fail_max:
         return None
     return straight, replace(short, values=dict(values))
 

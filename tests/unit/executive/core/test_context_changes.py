@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from tailor.executive.core import deliberation_cycle
 from tailor.executive.core.course import HALT_NS
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
@@ -51,6 +52,15 @@ class RunUp:
         return np.where((arguments[:, 1] > 0.0) & (arguments[:, 0] > -1.0), 0.02, 0.999)
 
 
+class ShortRunUp:
+    """Success ahead, beyond a wall: sure from just behind home, else probable."""
+
+    card = {"sha256": "toy"}
+
+    def probability(self, arguments):
+        return np.where((arguments[:, 1] > 0.0) & (arguments[:, 0] > -0.05), 0.8, 0.999)
+
+
 class WalledLine(LineDomain):
     """The toy robot that believes walls: as many as odometry has radians, at odometry's y."""
 
@@ -71,6 +81,12 @@ class RetreatingLine(WalledLine):
     """The same robot, which may drive elsewhere first."""
 
     actions = {"slide": replace(SLIDE, context=replace(WALL, failure_cost_s=60.0), subgoal_action="slide")}
+
+
+class WaryLine(RetreatingLine):
+    """The same robot, for which the wall costs less: it does not brake for the risk alone."""
+
+    actions = {"slide": replace(SLIDE, context=replace(WALL, failure_cost_s=14.0), subgoal_action="slide")}
 
 
 def run(walls, domain=None, success=None):
@@ -148,6 +164,19 @@ def test_robot_drives_on_without_its_subgoal_once_the_object_is_gone():
     assert not subgoals.actions[0].asserted
     assert commands[12].v > 0
     assert ticks[-1][0] == 1  # without a new deliberation
+
+
+@pytest.mark.parametrize("too_fast", [False, True])
+def test_robot_that_is_too_fast_for_its_models_brakes_before_it_drives_around_an_object(monkeypatch, too_fast):
+    monkeypatch.setattr(deliberation_cycle, "begins_too_fast", lambda sequence: too_fast)
+    ticks = run([(0, 0.0)] * 5 + [(1, 40.0)] * 3, WaryLine(), ShortRunUp())
+    (at, ended), *_ = published(ticks, ActionFinished)
+    commands = dict(published(ticks, VelocityCommand))
+    assert commands[5].v > 0
+    assert (ended.outcome, ended.reason) == ("aborted", "course at risk" if too_fast else "superseded")
+    last = published(ticks, Subgoals)[-1]
+    assert last[1].actions[0].asserted is not too_fast
+    assert commands[at + 1].v == 0 if too_fast else commands[at + 1].v < 0
 
 
 def test_the_same_inputs_give_the_same_messages():

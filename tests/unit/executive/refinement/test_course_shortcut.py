@@ -9,7 +9,9 @@ import pytest
 from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.course_shortcut import shortcut
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tests.support.synthetic_models import PI
 from tests.unit.executive.refinement.synthetic_context import BESIDE, GO_AROUND, beside
+from tests.unit.executive.refinement.test_rolling_start import at_rest
 
 START = {"x": -2.0, "y": 0.0, "phi": 0.0, "v": 0.0}
 GOAL = {"x": 2.0, "y": 0.0, "phi": 0.0, "v": 0.0}
@@ -18,11 +20,11 @@ SUBGOAL = {"x": 0.0, "y": 1.0, "phi": 0.0, "v": 0.3}
 EXACT = RefinementSettings(arrival_spread=(), certify_checks=0)
 
 
-def shortened(start, objects=(WALL,), settings=EXACT):
+def shortened(start, objects=(WALL,), settings=EXACT, go=GO_AROUND):
     """What is found from `start` on the way around a wall that lay between start and goal."""
-    decided = with_subgoal(beside((WALL,), [GO_AROUND], [START, GOAL]), 0)
+    decided = with_subgoal(beside((WALL,), [go], [START, GOAL]), 0)
     values = {variable.id: SUBGOAL[variable.quantity] for variable in decided.free()}
-    now = beside(objects, [GO_AROUND], [{**START, **start}, GOAL])
+    now = beside(objects, [go], [{**START, **start}, GOAL])
     return shortcut(decided, values, now, BESIDE, settings)
 
 
@@ -56,3 +58,12 @@ def test_shortcut_that_probably_fails_is_not_taken_however_cheap_failures_are():
     cheap = replace(EXACT, risk_cost_s=0.5)
     assert shortened(beside_it, settings=cheap) is None
     assert shortened(beside_it, settings=replace(cheap, p_fail_max=0.9)) is not None
+
+
+def test_robot_in_motion_has_to_be_safe_from_where_it_rolls_on_to_if_drives_begin_at_rest():
+    """A post stands ahead, 0.4 m beside the straight way: the robot would turn to that after it had rolled on."""
+    ahead, post = {"x": -0.6, "y": 1.0, "phi": 0.5 * PI}, (-0.6, 1.42, 0.2)
+    standing, rolling = {**ahead, "v": 0.0}, {**ahead, "v": 0.3}
+    assert shortened(standing, (post,), go=at_rest(GO_AROUND)) is not None
+    assert shortened(rolling, (post,), go=at_rest(GO_AROUND)) is None
+    assert shortened(rolling, (post,)) is not None, "models that know starts in motion are trusted"
