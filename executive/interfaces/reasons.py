@@ -78,7 +78,9 @@ REASONS: dict[Reason, Row] = {
     Reason.ROBOT_CARRIED: Row(ACTION, "failed: the robot was moved by others; it decides anew", ""),
     Reason.EFFECTS_HOLD: Row(ACTION, "done: its effects held before its controller ended", ""),
     Reason.SUPERSEDED: Row(ACTION, "aborted: a new decision begins with another action", ""),
-    Reason.COURSE_AT_RISK: Row(ACTION, "aborted: failure became likely beside objects; decides anew at rest", ""),
+    Reason.COURSE_AT_RISK: Row(
+        ACTION, "aborted: failure became likely beside objects, or too fast for a new way; decides anew at rest", ""
+    ),
     Reason.DISARMED: Row(ACTION, "aborted: the driver no longer obeys; it decides anew", "cause of mode DISARMED"),
     Reason.NEW_GOAL: Row(ACTION, "aborted: another goal was set", ""),
     Reason.SHUTDOWN: Row(ACTION, "aborted: the executive comes to rest and ends", ""),
