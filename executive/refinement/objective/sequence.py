@@ -86,13 +86,17 @@ class ActionSequence:
         return replace(self, variables=variables)
 
     def starting_from(self, starts: Sequence[Mapping[int, float]]) -> ActionSequence:
-        """The sequence with further starts: each is merged with one of the sequence's own."""
+        """The sequence with further starts: each is merged with one of the sequence's own; equal ones count once."""
         if not starts:
             return self
         own = self.starts or ({},)
         count = max(len(own), len(starts))
-        merged = tuple({**own[i % len(own)], **starts[i % len(starts)]} for i in range(count))
-        return replace(self, starts=merged)
+        merged: list[Mapping[int, float]] = []
+        for i in range(count):
+            start = {**own[i % len(own)], **starts[i % len(starts)]}
+            if start not in merged:
+                merged.append(start)
+        return replace(self, starts=tuple(merged))
 
     def within(self, horizon: int) -> tuple[InstantiatedAction, ...]:
         """The next `horizon` actions; an asserted subgoal counts together with the action after it."""
