@@ -9,6 +9,8 @@ from __future__ import annotations
 import gc
 import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -78,6 +80,26 @@ def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:
         except OSError as error:
             return f"default: {error.strerror}"
     return f"fifo {priority}, {elevated} threads"
+
+
+@contextmanager
+def inherited_fifo(priority: int = BUS_PRIORITY) -> Iterator[None]:
+    """Schedule under SCHED_FIFO whatever threads the calling thread starts meanwhile; a refusal changes nothing.
+
+    `elevate_bus_threads` knows a thread by the name that it gives itself. On a busy machine a thread may not have run
+    yet when it looks: such a one would stay under ordinary scheduling. This thread itself is scheduled as before again
+    at the end.
+    """
+    try:
+        before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    except OSError:
+        yield
+        return
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, before, parameters)
 
 
 def take_fifo(priority: int) -> str:

@@ -12,7 +12,7 @@ from tailor.runtime.bus.rights.credentials import Identity, Password
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
-from tailor.runtime.realtime import elevate_bus_threads
+from tailor.runtime.realtime import elevate_bus_threads, inherited_fifo
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.ros2.profiles import PLAIN, KeyProfile
 from tailor.schemas.services import ROLES, Role
@@ -28,8 +28,10 @@ def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT, keys: KeyProfile = 
     Raises:
       UsageError: The port is in use, or cannot be listened at.
     """
-    with _router(zenoh_config.router(listen), listen, keys) as session:
-        _start_threads(zenoh_config.client([listen], SELF_CONNECT_MS))
+    with ExitStack() as stack:
+        with inherited_fifo():
+            session = stack.enter_context(_router(zenoh_config.router(listen), listen, keys))
+            _start_threads(zenoh_config.client([listen], SELF_CONNECT_MS))
         yield session
 
 
@@ -48,12 +50,12 @@ def open_local_router(
       UsageError: The bus runs already, or its folder cannot be made.
     """
     users = (*ROLES, access.GATEWAY) if secured else ()
-    with (
-        hosted(endpoint, users, keys) as folder,
-        _router(zenoh_config.local_router(folder), endpoint, keys) as session,
-    ):
-        (folder.path / SOCKET).chmod(0o660)  # the folder decides who reaches it
-        _start_threads(_local_client(folder, "observer", SELF_CONNECT_MS))
+    with ExitStack() as stack:
+        folder = stack.enter_context(hosted(endpoint, users, keys))
+        with inherited_fifo():
+            session = stack.enter_context(_router(zenoh_config.local_router(folder), endpoint, keys))
+            (folder.path / SOCKET).chmod(0o660)  # the folder decides who reaches it
+            _start_threads(_local_client(folder, "observer", SELF_CONNECT_MS))
         yield session, folder
 
 
@@ -138,7 +140,7 @@ def _opened(
 
 
 def _start_threads(client: str) -> None:
-    """Connect once: zenoh starts its serving threads with the first client, and they can be elevated then."""
+    """Connect once: zenoh starts its serving threads with the first client; those of an earlier bus are elevated too."""
     with suppress(CannotOpenError), opened(client):
         pass
     elevate_bus_threads()
