@@ -9,13 +9,20 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.hardware.interface import Hardware
 
 
+PATIENT_S = 30.0  # of a call: no stall of the machine is taken for one of the hardware
+STALLED_S = 0.5
+
+
 class Faulty(Hardware):
     """Notes what is called; `raises` names the methods that raise `error`, `stalls` those that wait for `released`."""
 
     robot = "agilo"
-    open_s, read_s, write_s, write_hz = 0.15, 0.1, 0.1, 200.0
+    write_hz = 200.0
 
-    def __init__(self):
+    def __init__(self, impatient=()):
+        """Calls may take `PATIENT_S`, those named in `impatient` only `STALLED_S`."""
+        limits = [STALLED_S if name in impatient else PATIENT_S for name in ("open", "read", "write")]
+        self.open_s, self.read_s, self.write_s = limits
         self.raises, self.stalls, self.calls, self.written = set(), set(), Counter(), []
         self.released = threading.Event()
         self.error: type[BaseException] = OSError

@@ -113,12 +113,12 @@ def test_hardware_that_does_not_open_is_tried_again_and_cannot_be_armed(robot):
     [
         ("raises", "read", "read: OSError: no read"),
         ("raises", "write", "write: OSError: no write"),
-        ("stalls", "read", "read: stalled for 0.1 s"),
-        ("stalls", "write", "write: stalled for 0.1 s"),
+        ("stalls", "read", "read: stalled for 0.5 s"),
+        ("stalls", "write", "write: stalled for 0.5 s"),
     ],
 )
 def test_a_fault_stops_the_robot_until_a_person_arms_it_again(robot, kind, method, reason):
-    driven = robot()
+    driven = robot(Faulty(impatient={method} if kind == "stalls" else ()))
     driven.drive()
     setattr(driven.hardware, kind, {method})
     stopped_for(driven, reason)
@@ -139,7 +139,7 @@ def test_no_exception_ends_the_writing_unseen(robot, error):
 
 
 def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot):
-    driven = robot()
+    driven = robot(Faulty(impatient={"read"}))
     driven.drive()
     driven.hardware.stalls = {"read", "close frees"}
     stopped_for(driven, "read: stalled")
@@ -150,7 +150,7 @@ def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot
 
 
 def test_hardware_is_not_opened_while_a_call_is_still_inside_it(robot):
-    driven = robot()
+    driven = robot(Faulty(impatient={"read"}))
     driven.drive()
     driven.hardware.stalls = {"read"}
     stopped_for(driven, "read: stalled")
