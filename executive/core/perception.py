@@ -18,6 +18,7 @@ from tailor.executive.core.sensing.streams import of_known_senders, slow_topics,
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.domain import measurement_fault, relocations
+from tailor.executive.interfaces.outlet import staying
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.reason_text import reason_text
@@ -26,12 +27,15 @@ from tailor.schemas.topics import key_of
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
     """The state with this tick's inputs and the mode that follows from them."""
+    unsent = disarmed(context, state) is not None
     backward, now_ns = now_ns < state.now_ns, max(now_ns, state.now_ns)
     passed_ns, second_ago = now_ns - state.now_ns, now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
     arming = _driver_of(context, state.arming, now_ns, inputs)
     state = replace(state, tick=state.tick + 1, now_ns=now_ns, overruns_ns=overruns, arming=arming)
     state = _with_readings(context, state, inputs.samples)
+    if unsent and not _stale(context, state):  # arming moves nothing: also no gripper that people have opened by hand
+        state = replace(state, command=staying(context.domain, state.belief, state.command))
     if inputs.goal:
         state = _with_goal(context, state, inputs.goal)
     if inputs.stopping:
@@ -127,8 +131,13 @@ def _with_fault(topic: str, fault: str) -> str:
     return f"{topic} {fault}" if fault else topic
 
 
+def _stale(context: Context, state: State) -> tuple[str, ...]:
+    """Required sensors that are silent."""
+    return stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
+
+
 def _hold(context: Context, state: State) -> Cause | None:
-    stale = stale_topics(context.domain.required, context.domain.robot, state.arrivals, state.now_ns)
+    stale = _stale(context, state)
     if stale:
         faults = (state.measurements.faults.get(key_of(topic, context.domain.robot), "") for topic in stale)
         return Cause(Reason.INPUT_STALE, ", ".join(map(_with_fault, stale, faults)))

@@ -82,7 +82,8 @@ class Domain(Protocol):
       axes: Axes of the command. A robot with several command outlets also has an attribute `outlets`, see
         tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first. One whose belief
         notices that the robot was carried to another place has a method `relocations`, one that knows messages of its
-        sensors which cannot be true a method `measurement_fault`, see below.
+        sensors which cannot be true a method `measurement_fault`, one with axes that are kept a method `kept`, see
+        below.
       command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
       sensors: Topics from which the belief is estimated.
       required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.
@@ -184,6 +185,15 @@ def measurement_fault(domain: Domain, belief: Belief, message: Message) -> str:
     """
     judge = getattr(domain, "measurement_fault", None)
     return "" if judge is None else str(judge(belief, message))
+
+
+def kept_at(domain: Domain, belief: Belief) -> tuple[float, ...]:
+    """A set-point for each axis at which those that are kept stay where they are; () for a domain without `kept`.
+
+    Before a driver obeys, the command follows them: people may have moved a gripper by hand.
+    """
+    stay = getattr(domain, "kept", None)
+    return () if stay is None else tuple(stay(belief))
 
 
 class Conflict(Exception):

@@ -6,11 +6,13 @@ A robot with one outlet declares `axes`, `command_topic` and `message` in its do
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Axis, Domain
+from tailor.executive.interfaces.domain import Axis, Domain, kept_at
+from tailor.executive.interfaces.values import Belief
 from tailor.schemas.messages import Message
 
 Command = tuple[float, ...]  # one value per axis
@@ -60,6 +62,20 @@ def at_rest(axes: tuple[Axis, ...], last: Command = ()) -> Command:
     """The command that brings the robot to rest: zero, or for an axis that keeps its set-point the last one."""
     before = last or tuple(0.0 if axis.kept is None else axis.kept for axis in axes)
     return tuple(0.0 if axis.kept is None else value for axis, value in zip(axes, before, strict=True))
+
+
+def staying(domain: Domain, belief: Belief, last: Command) -> Command:
+    """The command that moves no axis: rest, where one that keeps its set-point gets the place at which it is.
+
+    One whose place the domain does not know keeps its set-point of `last`. One that is measured beyond its limits, as
+    the noise of an open gripper is, gets the limit.
+    """
+    rest = at_rest(domain.axes, last)
+    rows = zip(domain.axes, kept_at(domain, belief) or rest, rest, strict=True)
+    return tuple(
+        min(axis.upper, max(axis.lower, at)) if axis.kept is not None and math.isfinite(at) else old
+        for axis, at, old in rows
+    )
 
 
 def completed(domain: Domain, action: Action, command: Command, last: Command) -> Command:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.domains.kitchen import abstract_state, implausible, predicates
+from tailor.executive.domains.kitchen import abstract_state, implausible, predicates, robot
 from tailor.executive.domains.kitchen import belief as believing
 from tailor.executive.domains.kitchen.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.kitchen.belief import KitchenBelief
@@ -83,6 +83,11 @@ class KitchenDomain:
     def relocations(self, belief: KitchenBelief) -> int:
         """How often base or arm were moved by others."""
         return belief.relocated
+
+    def kept(self, belief: KitchenBelief) -> tuple[float, ...]:
+        """Set-points at which the gripper stays as wide as it is, and goes on pressing what is in it."""
+        pressed_m = robot.PRESSED_M if belief.force > robot.PRESSED_N else 0.0
+        return (*(0.0,) * (len(BASE) + len(ARM)), max(0.0, belief.width - pressed_m))
 
     def measurement_fault(self, belief: KitchenBelief, message: Message) -> str:
         """Why a message is no measurement, see kitchen.implausible."""
