@@ -13,7 +13,7 @@ from tailor.executive.core.sensing.freshness import (
     newest_arrivals,
     stale_topics,
 )
-from tailor.executive.core.sensing.measurements import fastest_of, without_faulty
+from tailor.executive.core.sensing.measurements import without_faulty
 from tailor.executive.core.sensing.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
@@ -66,7 +66,7 @@ def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) 
     domain = context.domain
     received = of_known_senders(domain.sensors, domain.robot, state.streams, samples)
     judge = partial(measurement_fault, domain, state.belief)
-    measurements, readings = without_faulty(state.measurements, received, fastest_of(domain), judge)
+    measurements, readings = without_faulty(state.measurements, received, state.fastest, judge)
     belief = domain.update(state.belief, state.now_ns, readings, state.command)
     return replace(
         state,

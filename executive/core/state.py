@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.core.execution import Running
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.sensing.measurements import Measurements
+from tailor.executive.core.sensing.measurements import Measurements, Speeds, fastest_of
 from tailor.executive.core.sensing.streams import Stream
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
@@ -91,6 +91,7 @@ class State:
     arrivals: Mapping[str, int] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)  # of the sensors, to know their rates
     measurements: Measurements = field(default_factory=Measurements)
+    fastest: Speeds | None = None  # that odometry may have, by the domain's axes; never changes
     overruns_ns: tuple[int, ...] = ()  # ticks of the last second before which whole periods were lost
     arming: Arming = field(default_factory=Arming)
     task: Task = field(default_factory=Task)
@@ -112,5 +113,5 @@ def undecided(state: State) -> State:
 
 def initial_state(context: Context) -> State:
     """State before the first tick: no goal, no percepts, a zero command."""
-    arming = Arming(driver_sender=context.driver_sender)
-    return State(belief=context.domain.initial_belief(), command=at_rest(context.domain.axes), arming=arming)
+    domain, arming = context.domain, Arming(driver_sender=context.driver_sender)
+    return State(domain.initial_belief(), at_rest(domain.axes), arming=arming, fastest=fastest_of(domain))
