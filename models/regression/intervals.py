@@ -52,9 +52,7 @@ def with_std(features: NDArray[np.floating], std: NDArray[np.floating]) -> Float
     return np.column_stack([features, std]).astype(np.float32)
 
 
-def fit_intervals(
-    features: Array, std: Array, errors: Array, groups: Numbers, seed: int, kinds: Numbers | None = None
-) -> Intervals:
+def fit_intervals(features: Array, std: Array, errors: Array, groups: Numbers, seed: int, kinds: Numbers) -> Intervals:
     """Fit intervals that hold LEVEL of the errors of each kind of episodes, in every third of their widths.
 
     Args:
@@ -63,7 +61,7 @@ def fit_intervals(
       errors: Observed minus predicted values of unseen episodes, shape (n,).
       groups: Episode of each row, shape (n,).
       seed: Seed of the folds.
-      kinds: Kind of each row, shape (n,), as random or chosen by the optimiser; None: one.
+      kinds: Kind of each row, shape (n,), as random or chosen by the optimiser.
     """
     rows = with_std(features, std)
     width, excess = np.empty(len(errors)), np.empty(len(errors))
@@ -73,7 +71,7 @@ def fit_intervals(
         width[apart] = upper[leaf] - lower[leaf]
         excess[apart] = np.where(errors[apart] < 0, errors[apart] / lower[leaf], errors[apart] / upper[leaf])
     splits, lower, upper = _grown(rows, errors)
-    factor = _factors(width, excess, np.zeros(len(errors), np.int64) if kinds is None else kinds, upper - lower)
+    factor = _factors(width, excess, kinds, upper - lower)
     return Intervals(splits, (factor * lower).astype(np.float32), (factor * upper).astype(np.float32))
 
 

@@ -16,10 +16,14 @@ def heteroscedastic(count: int, seed: int):
     return features, std, scale * (rng.exponential(1.0, count) - 0.7)
 
 
+def one_kind(count):
+    return np.zeros(count, np.int64)
+
+
 @pytest.fixture(scope="module")
 def intervals():
     features, std, errors = heteroscedastic(3000, 1)
-    return fit_intervals(features, std, errors, np.arange(3000), seed=1)
+    return fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=one_kind(3000))
 
 
 def test_every_third_of_the_widths_holds_nine_tenths_of_fresh_errors(intervals) -> None:
@@ -39,14 +43,14 @@ def test_choices_that_err_more_than_the_features_tell_are_held_as_well() -> None
 
     features, std, errors, chosen = some(3000, 1)
     fitted = {
-        kinds is None: fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=kinds)
-        for kinds in (None, chosen.astype(np.int64))
+        alike: fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=kinds)
+        for alike, kinds in ((True, one_kind(3000)), (False, chosen.astype(np.int64)))
     }
     features, std, errors, chosen = some(30_000, 2)
     held = {}
-    for one_kind, intervals in fitted.items():
+    for alike, intervals in fitted.items():
         lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
-        held[one_kind] = coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]
+        held[alike] = coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]
     assert held[False] == pytest.approx([90, 90, 90], abs=3)
     assert max(held[True]) < 87
 
@@ -73,7 +77,7 @@ def test_skewed_errors_have_skewed_intervals(intervals) -> None:
 
 def test_few_episodes_give_one_interval_that_holds_them_all() -> None:
     features, std, errors = heteroscedastic(20, 3)
-    few = fit_intervals(features, std, errors, np.arange(20), seed=1)
+    few = fit_intervals(features, std, errors, np.arange(20), seed=1, kinds=one_kind(20))
     lower, upper = few.around(features.astype(np.float32), np.zeros(20), std)
     assert ((errors >= lower) & (errors <= upper)).mean() >= 0.9
 
