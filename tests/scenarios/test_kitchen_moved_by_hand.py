@@ -61,9 +61,7 @@ class System:
 @pytest.mark.parametrize("stop", STOPS.values(), ids=STOPS)
 @pytest.mark.parametrize("width", [0.03, 0.12])
 @pytest.mark.parametrize("profile", PROFILES)
-def test_a_gripper_that_people_have_moved_stays_where_it_is_when_they_arm_the_robot(
-    stop, width, profile, measured
-):
+def test_a_gripper_that_people_have_moved_stays_where_it_is_when_they_arm_the_robot(stop, width, profile, measured):
     robot = System(profile, width=0.08)
     robot.until(5)
     robot.arm()

@@ -18,22 +18,12 @@ def learned_beside(domain: str) -> list[str]:
     return [name for name, context in contexts.items() if context and context.success_model.startswith(f"{name}/")]
 
 
-def check_objects(robot: str, recipe: Recipe) -> None:
-    """Check that rounds have the models beside objects that the executive chooses by.
-
-    Raises:
-      UsageError: The recipe gathers nothing beside objects.
-    """
-    needed = learned_beside(random_episodes.domain_of(robot)) if recipe.rounds else []
-    if needed and not recipe.beside:
-        raise UsageError(f"recipe: beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")
-
-
 def check_recipe(robot: str, recipe: Recipe) -> None:
-    """Check the names in a recipe: of the profile, actions and scenarios.
+    """Check a recipe: names of the profile, actions and scenarios, and that rounds can choose.
 
     Raises:
-      UsageError: The robot has none of a name.
+      UsageError: The robot has none of a name; or the recipe has rounds, and gathers nothing beside objects where the
+        executive chooses by models of success beside them.
     """
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
@@ -43,3 +33,6 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
             raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
     for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
+    needed = learned_beside(domain) if recipe.rounds else []
+    if needed and not recipe.beside:
+        raise UsageError(f"recipe: beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -146,8 +146,8 @@ class EpisodeExtractor:
         ticks = np.stack(run.ticks)
         duration_s = finished.actual_s - run.begun_s
         work_j = self._work(run.motions)
-        episode = Episode(len(self.episodes), ticks[0], ticks, duration_s, not failure, failure, done, work_j)
-        episode = replace(episode, in_context=run.in_context)
+        number, start, place = len(self.episodes), ticks[0], run.in_context
+        episode = Episode(number, start, ticks, duration_s, not failure, failure, done, work_j, in_context=place)
         self.episodes.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
 
     def _work(self, motions: list[Message | None]) -> Array | None:

@@ -15,7 +15,6 @@ from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.making.steps import check, make
 from tailor.tools.learning.recipe import read_recipe, recipe_path
-from tailor.tools.learning.recipe_checks import check_objects
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.parallel.steps import Step, show
 
@@ -59,7 +58,6 @@ def _making(robot: str, arguments: argparse.Namespace) -> Making:
     command = f"tailor make-models {robot}" + (f" --recipe {arguments.recipe}" if arguments.recipe else "")
     making = Making(robot, recipe, arguments.work, arguments.jobs, command)
     check(making)  # of every robot, before the models of the first one are made
-    check_objects(robot, recipe)
     return making
 
 

@@ -17,7 +17,7 @@ from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
-TINY = Recipe(40, rounds=(Round("on-policy", ("approach",), 1),))
+TINY = Recipe(40, beside=20, rounds=(Round("on-policy", ("approach",), 1),))
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, tr
     making = Making("agilo", TINY, tmp_path, 1, "make")
     steps = list(make(making))
     assert [(r.zoo.name, [d.name.split("-")[0] for d in r.data]) for r in trained] == [
-        ("zoo-0", ["random"]), ("zoo", ["random", "round"])
+        ("zoo-0", ["random", "random"]), ("zoo", ["random", "round", "random"])
     ]  # fmt: skip
     assert all(request.command == "make" for request in trained)
     assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
