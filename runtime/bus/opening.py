@@ -140,7 +140,7 @@ def _opened(
 
 
 def _start_threads(client: str) -> None:
-    """Connect once: zenoh starts its serving threads with the first client; those of an earlier bus are elevated too."""
+    """Connect: zenoh starts its serving threads with the first client. Those of an earlier bus are elevated too."""
     with suppress(CannotOpenError), opened(client):
         pass
     elevate_bus_threads()

@@ -44,7 +44,9 @@ def published(mode_at, silent=(), domain=DOMAIN, ticks=24):
         goal = "(visited b)" if n == 1 else ""
         given = Inputs((*percepts, driver(now_ns, mode_at(n))), goal)
         state, outputs = step(context, state, now_ns, given, CheckBudget(50))
-        sent.update({n: o.message.velocities[1] for o in outputs if o.topic == "joint_cmd"})
+        for output in outputs:
+            if output.topic == "joint_cmd":
+                sent[n] = output.message.velocities[1]
     return sent
 
 

@@ -8,7 +8,6 @@ from tailor.schemas.messages import Odometry
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.hardware.interface import Hardware
 
-
 PATIENT_S = 30.0  # of a call: no stall of the machine is taken for one of the hardware
 STALLED_S = 0.5
 
