@@ -6,7 +6,7 @@ unit count as one value, their mean.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Units = Sequence[str | int]
 P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000
+MIN_UNITS = 3  # the t-interval over two is 12.7 standard errors wide either way, whatever happened within each
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +145,11 @@ def share_interval(count: int, n: int) -> tuple[float, float]:
         return 0.0, 100.0
     interval = stats.binomtest(count, n).proportion_ci(0.95, method="wilson")
     return 100 * float(interval.low), 100 * float(interval.high)
+
+
+def without_intervals(row: Mapping[str, Any]) -> dict[str, Any]:
+    """The columns of a row but those that conclude from its units to others: intervals and p-values."""
+    return {name: value for name, value in row.items() if not (name.startswith("p_") or name.endswith(("ci95", "_p")))}
 
 
 def p_shown(p_value: float) -> float | str:
