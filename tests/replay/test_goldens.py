@@ -22,10 +22,12 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.messages import Provenance, RefinementReport, VelocityCommand
 from tailor.tools.goldens import renew
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import RecordedRuns, decoded
+from tailor.tools.recordings.recorded_source import UNSTATED
 from tailor.tools.recordings.verification import verdict_text, verify
 from tests.support.bus_system import ROOT
 
@@ -129,6 +131,16 @@ def test_a_changed_setting_fails_with_tick_field_and_both_values(tmp_path, capsy
     assert main(["verify", str(path)]) == 1
     output = capsys.readouterr().out
     assert re.match(r"different: tick \d+, exec/refinement, horizon: recorded 2, today 1\n", output), output
+    assert UNSTATED in output
+
+
+def test_a_difference_names_the_folders_whose_source_is_another(tmp_path, capsys):
+    def older(made_of):
+        other_horizon(made_of)
+        made_of["source"] = {"version": "0.0.9", "folders": {**core_source("soccer"), "executive/core": "0"}}
+
+    assert main(["verify", str(rewritten(SOME, tmp_path / "older.mcap", with_provenance(older)))]) == 1
+    assert "\n  recorded by tailor 0.0.9 with another executive/core\n" in capsys.readouterr().out
 
 
 def test_a_last_bit_is_a_difference_on_the_same_kind_of_machine(tmp_path):

@@ -14,9 +14,11 @@ from tailor.executive.replay import RecordedTick, replay
 from tailor.runtime.gc_freeze import gc_frozen
 from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind, same_products
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.core_source import core_source
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
 from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
+from tailor.tools.recordings.recorded_source import source_contrast
 
 
 class TickWriter(Protocol):
@@ -40,6 +42,7 @@ class Verdict:
     left_out: str  # messages on exec/tick that are not ticks of an executive; empty if none
     took_s: float  # without reading the file, loading models and compiling codecs
     ends: str = ""  # why the comparison ends before the run does; empty if it does not
+    source: str = ""  # whether today's source recorded it; empty without a difference
 
     @property
     def times_real_time(self) -> float:
@@ -96,6 +99,7 @@ def verify(
         runs.left_out_text(),
         took_s,
         ends,
+        source_contrast(run.provenance.get("source"), core_source(context.domain.name)) if difference else "",
     )
 
 
@@ -120,7 +124,7 @@ def verdict_text(verdict: Verdict) -> str:
     ends = f"\n  not verified to the end: {verdict.ends}" if verdict.ends else ""
     machines = f"\n  recorded on {verdict.machines}" if verdict.machines else ""
     if verdict.difference is not None:
-        return f"different: {verdict.difference}{machines}{left_out}"
+        return f"different: {verdict.difference}\n  {verdict.source}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
         within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"

@@ -10,11 +10,14 @@ import argparse
 import dataclasses
 import json
 from pathlib import Path
+from typing import Any
 
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.core_source import core_source
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
+from tailor.tools.recordings.recorded_source import source_entry
 from tailor.tools.recordings.verification import Verdict, verdict_text, verify
 
 
@@ -60,8 +63,12 @@ def _verify_and_write(path: Path, runs: RecordedRuns) -> Verdict:
         raise UsageError(f"--output {path}: exists already, expected the name of a new file")
     run = runs.runs[0]
     context = rebuild_context(run.provenance)
-    writer = RunWriter(path, context, {**run.provenance, "machine": platform_fingerprint()})
+    writer = RunWriter(path, context, {**run.provenance, **_made_here(context.domain.name)})
     try:
         return verify(runs, run, context, writer)
     finally:
         writer.close()
+
+
+def _made_here(domain: str) -> dict[str, Any]:
+    return {"machine": platform_fingerprint(), "source": source_entry(core_source(domain))}

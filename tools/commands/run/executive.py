@@ -19,6 +19,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.ros_time import wrapped_ns
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
@@ -27,6 +28,7 @@ from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
+from tailor.tools.recordings.recorded_source import source_entry
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -61,6 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         numpy_blocks.fill()
         origin = {**provenance(config, context), "machine": platform_fingerprint()}
+        origin["source"] = source_entry(core_source(context.domain.name))
         origin["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), origin, notifier)
         print_states = not notifier.supervised

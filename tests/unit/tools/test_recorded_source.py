@@ -1,0 +1,68 @@
+"""A difference from a recording names what lies between its source and today's."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from tailor.schemas.installed import core_source as module
+from tailor.schemas.installed.core_source import core_source
+from tailor.schemas.installed.source import ROOT
+from tailor.tools.recordings.recorded_source import UNSTATED, source_contrast, source_entry
+
+TODAY = {"executive/core": "aa", "executive/domains/soccer": "bb"}
+
+
+@pytest.mark.parametrize("recorded", [None, "0.1.0", {}, {"folders": "aa"}, {"folders": ["aa"]}, [1], 7])
+def test_a_recording_that_states_no_source_is_not_guessed_at(recorded):
+    assert source_contrast(recorded, TODAY) == UNSTATED
+
+
+def test_a_difference_under_the_same_source_is_a_fault():
+    assert "by this very source" in source_contrast(source_entry(TODAY), TODAY)
+
+
+@pytest.mark.parametrize(
+    ("folders", "named"),
+    [
+        ({**TODAY, "executive/core": "cc"}, "another executive/core"),
+        ({"executive/core": "aa"}, "another executive/domains/soccer"),
+        ({**TODAY, "executive/lost": "cc"}, "another executive/lost"),
+        (dict.fromkeys(TODAY, "cc"), "another executive/core, executive/domains/soccer"),
+    ],
+)
+def test_the_folders_that_differ_are_named(folders, named):
+    told = source_contrast({"version": "0.0.9", "folders": folders}, TODAY)
+    assert told == f"recorded by tailor 0.0.9 with {named}"
+
+
+def test_a_hostile_source_gives_one_short_line():
+    told = source_contrast({"version": "1" * 10**6, "folders": {"x" * 10**6: 1, 5: None}}, TODAY)
+    assert len(told) < 300
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    """A copy of what is hashed, in which files may be changed."""
+    for start in ("executive/core", "executive/planning", "schemas/messages"):
+        shutil.copytree(ROOT / start, tmp_path / start, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("file", ["executive/core/modes.py", "executive/planning/pddl/language.py"])
+def test_a_changed_file_changes_its_folder_and_no_other(copy, file):
+    before = core_source("soccer")
+    (copy / file).open("a").write("x = 1")
+    after = core_source("soccer")
+    assert [name for name in before if before[name] != after[name]] == ["/".join(file.split("/")[:2])]
+
+
+def test_a_robot_has_the_source_of_its_own_domain_and_of_no_other():
+    soccer, kitchen = core_source("soccer"), core_source("kitchen")
+    assert {name: hash for name, hash in soccer.items() if "domains" not in name} == {
+        name: hash for name, hash in kitchen.items() if "domains" not in name
+    }
+    assert [name for name in soccer if "domains" in name] == ["executive/domains/soccer"]
+    assert {"executive", "executive/core", "executive/refinement", "schemas/messages"} < soccer.keys()
