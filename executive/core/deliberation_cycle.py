@@ -1,4 +1,4 @@
-"""The life of a deliberation: start, resume, adoption of its decision. Uses what the tick's budget leaves."""
+"""The life of a deliberation: start, resume, end. Uses what the tick's budget leaves."""
 
 from __future__ import annotations
 
@@ -6,18 +6,16 @@ from dataclasses import replace
 from functools import partial
 
 from tailor.executive import planning
-from tailor.executive.core.course import HALT_COST_S, halted, redirected, risk_of_course, shortened, starts_another
-from tailor.executive.core.execution import Running
+from tailor.executive.core.adoption import adopted
+from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.perception import slow_inputs
-from tailor.executive.core.state import Inputs, State, Task
+from tailor.executive.core.state import Inputs, State
 from tailor.executive.deliberation.context import Context
-from tailor.executive.deliberation.deliberation import Decision, Deliberation
+from tailor.executive.deliberation.deliberation import Deliberation
 from tailor.executive.deliberation.plan_reuse import Preparation, reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Result
-from tailor.executive.refinement.rolling_start import begins_too_fast
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 
@@ -55,7 +53,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
         return replace(state, task=task)
     decision = deliberation.decision()
     if decision is not None:
-        state = _adopted(context, state, decision, deliberation.stage == "decided")
+        state = adopted(context, state, decision, deliberation.stage == "decided")
     if deliberation.stage == "decided":
         state = _prepared(context, state, budget)
         deliberation.certify(budget)  # what is left of the budget
@@ -107,56 +105,6 @@ def _with_failure(state: State, cause: Cause | None) -> State:
         return state
     task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
     return replace(state, task=task)
-
-
-def _adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:
-    """The state with a decision: at once between actions, otherwise only if it is worth a change."""
-    task = state.task
-    new_plan = task.plan is not decision.plan
-    if task.running is None:
-        return replace(state, task=_with_decision(task, decision, new_plan))
-    running = _as_step_of(decision, task.running, task.plan)
-    if starts_another(decision, running) and slow_inputs(context, state) is not None:
-        return state
-    if task.decision is not None and decision.number == task.decision.number:
-        return _redirected_if_better(context, state, running, task.decision, decision)
-    if not decided:
-        return state
-    if decision.sequence.actions[0].asserted and begins_too_fast(decision.sequence):
-        return halted(context, state)
-    return replace(state, task=redirected(context, _with_decision(task, decision, new_plan), running, state.now_ns))
-
-
-def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
-    return replace(task, decision=decision, plan=decision.plan, done=frozenset() if new_plan else task.done)
-
-
-def _redirected_if_better(context: Context, state: State, running: Running, old: Decision, new: Decision) -> State:
-    """A better subgoal for the running action, if it comes early and its predicted gain exceeds the threshold."""
-    settings = context.settings
-    early = running.elapsed_s(state.now_ns) <= settings.refine_while_running_s
-    if not early or old.choice.total_s - new.choice.total_s < settings.adopt_gain_s:
-        return state
-    task = replace(state.task, decision=new)
-    return replace(state, task=redirected(context, task, running, state.now_ns))
-
-
-def _as_step_of(decision: Decision, running: Running, plan: planning.Plan | None) -> Running:
-    """The running action as the first step of a decision, whose plan may have another number for it."""
-    first = decision.sequence.actions[0]
-    if plan is None or _undertaking(plan, running.step, running) != _undertaking(decision.plan, first.step, running):
-        return running
-    return replace(running, step=first.step)
-
-
-def _undertaking(plan: planning.Plan, step: int, running: Running) -> planning.Fact | None:
-    """The ground action of a step without the label of its start: a robot on its way is no longer there."""
-    action = plan.action_of(step)
-    arguments = {parameter.argument for parameter in running.action.parameters}
-    if action is None or len(arguments) == 1:
-        return action
-    start = 1 + min(arguments)
-    return (*action[:start], *action[start + 1 :])
 
 
 def _prepared(context: Context, state: State, budget: Budget) -> State:

@@ -8,7 +8,7 @@ from tailor.executive import planning
 from tailor.executive.core.state import State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
-from tailor.executive.deliberation.plan_source import PlanFound
+from tailor.executive.deliberation.plan_found import PlanFound
 from tailor.executive.interfaces.reasons import Cause
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m

@@ -9,7 +9,8 @@ import numpy as np
 
 from tailor.executive import planning
 from tailor.executive.deliberation.context import Context
-from tailor.executive.deliberation.plan_source import PlanFound, PlanSource
+from tailor.executive.deliberation.plan_found import PlanFound
+from tailor.executive.deliberation.plan_source import PlanSource
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Belief

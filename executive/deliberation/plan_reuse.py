@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.deliberation.context import Context
-from tailor.executive.deliberation.plan_source import REUSE_FREE_PORTIONS, PlanFound, current_problem, validated
+from tailor.executive.deliberation.plan_found import PlanFound, validated
+from tailor.executive.deliberation.plan_source import REUSE_FREE_PORTIONS, current_problem
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.values import Fact
 

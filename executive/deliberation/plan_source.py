@@ -6,42 +6,16 @@ Every plan is validated before use. The built-in search takes over when the exte
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
 
 from tailor.executive import planning
 from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.plan_found import PlanFound, answered, validated
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 GRACE_S = 2.0  # beyond the planner's own limit; after that the process that runs it must be gone
 REUSE_FREE_PORTIONS = 128  # plans of some twenty steps
-MAX_FACTS = 12  # in the detail of a task that is unsolvable
-
-Way = Literal["searched", "suffix", "improved", "external"]
-
-_REFUSALS = {
-    "unsolvable": Reason.UNSOLVABLE,
-    "limit": Reason.SEARCH_LIMIT,
-    "unsupported": Reason.PDDL_UNSUPPORTED,
-}
-
-
-@dataclass(frozen=True, slots=True)
-class PlanFound:
-    """Result of one source; `status` as in planning.Result, or "failed" for an external planner.
-
-    `refusal` is the cause for which there is no plan; None if there is one.
-    """
-
-    status: str
-    way: Way
-    plan: planning.Plan | None
-    generated: int
-    visited: int
-    refusal: Cause | None = None
 
 
 class _HeadStart:
@@ -129,35 +103,13 @@ class PlanSource:
             if self._answer is None or budget.spent():
                 return None
             self.request = None
-            return _from_answer(self._answer, self._domain, self.problem)
+            return answered(self._answer, self._domain, self.problem)
         limited = budget if self._make_request is None else _HeadStart(budget, self._search, self._after_plans)
         result = self._search.advance(limited)
         if result is not None and (self._make_request is None or result.status in ("solved", "unsolvable")):
             return validated(result, "searched", self._domain, self.problem)
         self._request_if_due(ended=result is not None)
         return None
-
-
-def validated(
-    result: planning.Result, way: Way, domain: planning.Domain, problem: planning.Problem
-) -> planning.Work[PlanFound]:
-    """Result of the built-in search; without its plan if that is unsound from the problem's initial state."""
-    refusal = _REFUSALS.get(result.status)
-    cause = Cause(refusal, _detail(result, problem)) if refusal is not None else None
-    plan = result.plan
-    if plan is not None and (fault := (yield from planning.validation(plan, domain, planning.Objects(problem)))):
-        plan, cause = None, Cause(Reason.PLAN_UNSOUND, fault)
-    return PlanFound(result.status, way, plan, result.generated, result.visited, cause)
-
-
-def _detail(result: planning.Result, problem: planning.Problem) -> str:
-    """Text of the search; what is unsolvable is so from a state, of which people can only guess what the belief has."""
-    if result.status != "unsolvable":
-        return result.reason
-    changing = {effect.atom.predicate for action in problem.domain.actions for effect in action.effects}
-    facts = sorted(f"({' '.join(fact)})" for fact in problem.initial if fact[0] in changing)
-    shown = " ".join([*facts[:MAX_FACTS], *(["..."] if len(facts) > MAX_FACTS else [])])
-    return f"{result.reason}, from {shown or 'a state without facts'}"
 
 
 def request_for(context: Context, problem: planning.Problem, number: int, now_ns: int) -> PlanRequest:
@@ -169,25 +121,3 @@ def current_problem(context: Context, facts: frozenset[Fact], goal: str) -> plan
     """The scenario's problem with `facts` as its initial state; an empty goal keeps the scenario's own."""
     problem = context.problem.with_initial(sorted(facts))
     return problem.with_goal(goal) if goal else problem
-
-
-def _from_answer(answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem) -> planning.Work[PlanFound]:
-    plan = yield from _parsed(answer, domain, problem)
-    if isinstance(plan, planning.Plan):
-        return PlanFound("solved", "external", plan, 0, 0)
-    return PlanFound("failed", "external", None, 0, 0, plan)
-
-
-def _parsed(
-    answer: PlanAnswer, domain: planning.Domain, problem: planning.Problem
-) -> planning.Work[planning.Plan | Cause]:
-    """The plan of an answer, or the cause for which there is none."""
-    if answer.outcome != "answered":
-        return Cause(Reason.PLANNER_FAILED, f"{answer.outcome}: {answer.reason}")
-    try:
-        parsed = planning.parse_plan(answer.output)
-    except planning.PlanTextError as error:
-        return Cause(Reason.PLAN_UNREADABLE, f"{answer.reason}; {error}")
-    yield
-    plan = yield from planning.completion(parsed, domain, problem)
-    return plan if isinstance(plan, planning.Plan) else Cause(Reason.PLAN_UNSOUND, plan)
