@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json, shown
 
 MANIFEST = "manifest.json"
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")  # part of the paths of models: "../x" would be written beside the zoo
 
 
 def _are_names(value: Any) -> bool:
@@ -29,6 +31,9 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "scenarios": (_are_names, "a list of names"),
     "recordings": (_are_names, "a list of names"),
     "context": (_is_context, "names of columns, and a failure"),
+    "seed": (is_count, "a whole number"),
+    "stream": (is_count, "a whole number"),
+    "on_policy": (lambda value: isinstance(value, bool) or is_count(value), "true or false"),
     "source_sha256": (lambda value: isinstance(value, str), "text"),
     "source_files": (lambda value: isinstance(value, dict), "an object"),
 }
@@ -61,8 +66,8 @@ def _manifest_error(manifest: Any) -> str:
     if not isinstance(manifest, dict):
         return f"a {type(manifest).__name__}, expected an object"
     for key in ("robot", "action"):
-        if not isinstance(manifest.get(key), str):
-            return f"{key} is {shown(manifest.get(key))}, expected a name"
+        if not (isinstance(manifest.get(key), str) and _NAME.fullmatch(manifest[key])):
+            return f"{key} is {shown(manifest.get(key))}, expected a name of letters, digits, - and _"
     for key, (has_shape, expected) in OPTIONAL.items():
         if manifest.get(key) is not None and not has_shape(manifest[key]):
             return f"{key} is {shown(manifest[key])}, expected {expected}"

@@ -61,6 +61,8 @@ def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:
     for name in numbers:
         if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
             raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
+    if (table["duration_s"].to_numpy() < 0.0).any():
+        raise UsageError(f"{path}: column duration_s holds negative numbers, expected seconds")
     for name in (name for name in PER_EPISODE if name in table.column_names):
         check, expected = PER_EPISODE[name]
         if not getattr(pa.types, check)(table[name].type) or table[name].null_count:

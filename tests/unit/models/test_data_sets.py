@@ -89,6 +89,7 @@ def change_all(column: str, value: list[object]) -> Callable[[Path], None]:
         (lambda path: pq.write_table(pq.read_table(path).slice(0, 0), path), "lacks rows"),
         (change("xg", None), "lacks xg"),
         (change("xg", float("nan")), "column xg holds values that are not finite numbers"),
+        (change_all("duration_s", [1.0] * 5 + [-1.0]), "column duration_s holds negative numbers, expected seconds"),
         (change_all("episode", ["x"] * 6), "column episode holds string, expected integers in every row"),
         (change_all("episode", [float("nan")] * 6), "column episode holds double, expected integers in every row"),
         (change_all("episode", [0, None, 2, 3, 4, 5]), "column episode holds int64, expected integers in every row"),
@@ -118,6 +119,12 @@ def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_on
     ("key", "value", "message"),
     [
         ("robot", 1, "robot is 1, expected a name"),
+        ("robot", "../agilo", "robot is '../agilo', expected a name of letters, digits"),
+        ("action", "../../reach", "action is '../../reach', expected a name of letters, digits"),
+        ("action", "", "action is '', expected a name"),
+        ("seed", "x", "seed is 'x', expected a whole number"),
+        ("stream", 1.5, "stream is 1.5, expected a whole number"),
+        ("on_policy", "no", "on_policy is 'no', expected true or false"),
         ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
         ("arguments", [], "arguments is"),
         (
