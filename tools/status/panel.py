@@ -154,14 +154,20 @@ def _topics(topics: Sequence[TopicView]) -> RenderableType:
         periodic = topic.nominal_hz > 0
         table.add_row(
             Text(plain(topic.key)),
-            Text("" if topic.rate_hz is None else f"{topic.rate_hz:.1f}", BAD if topic.slow else "default"),
-            f"{topic.nominal_hz:g}" if periodic else "on change",
+            Text(_rate(topic), BAD if topic.slow else "default" if periodic else WEAK),
+            f"{topic.nominal_hz:g}" if periodic else "",
             Text(f"{topic.age_s:.2f}", BAD if topic.stale else "default"),
             "" if topic.stale_after_s is None else f"{topic.stale_after_s:g}",
             str(topic.received),
             Text(str(topic.senders), BAD if periodic and topic.senders > 1 else "default"),
         )
     return Padding(table, (1, 0, 0, 0))
+
+
+def _rate(topic: TopicView) -> str:
+    if topic.nominal_hz <= 0:
+        return topic.published
+    return "" if topic.rate_hz is None else f"{topic.rate_hz:.1f}"
 
 
 def _foreign(foreign: ForeignView) -> list[RenderableType]:

@@ -83,8 +83,9 @@ class TopicView:
     key: str
     received: int
     age_s: float
-    rate_hz: float | None  # measured over at most 5 s; None: fewer than two messages
-    nominal_hz: float  # 0: on demand or on change
+    published: str  # "periodically" or "on change", which includes on demand
+    rate_hz: float | None  # measured over at most 5 s; None: fewer than two messages, or not periodical
+    nominal_hz: float  # 0: not periodical
     stale_after_s: float | None
     stale: bool
     slow: bool  # below 3/4 of its rate; only topics with a stale limit

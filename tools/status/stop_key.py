@@ -17,6 +17,11 @@ MAX_WAITING = 4  # presses that wait for an earlier one to be confirmed
 class Button(Protocol):
     """Stops every driver; `tailor.tools.operator.stop_button.StopButton` does."""
 
+    @property
+    def connected(self) -> bool:
+        """Whether a press reaches the bus."""
+        ...
+
     def press(self) -> object:
         """Return when every driver has confirmed, or after a time limit."""
         ...
@@ -51,6 +56,11 @@ class StopKey:
             return Text("no keyboard: no emergency stop from here", "yellow")
         text = Text(" s or space: EMERGENCY STOP ", "bold white on red").append("  q: quit  ", "default on default")
         if self._pressed:
-            modes = [f"{driver.robot} is {driver.mode}" for driver in picture.drivers]
-            text.append(plain("pressed: " + (", ".join(modes) or "no driver is on the bus")), "bold red on default")
+            text.append(plain(f"pressed: {self._outcome(picture)}"), "bold red on default")
         return text
+
+    def _outcome(self, picture: Picture) -> str:
+        if not self._button.connected:
+            return "NOT CONFIRMED: the bus is lost; use tailor estop"
+        modes = [f"{driver.robot} is {'silent' if driver.silent else driver.mode}" for driver in picture.drivers]
+        return ", ".join(modes) or "NOT CONFIRMED: no driver is heard on the bus"

@@ -114,11 +114,13 @@ def _topic_view(key: str, arrivals: Arrivals, rates_hz: Mapping[str, float], now
     topic = _topic(key)
     nominal_hz = rates_hz.get(key, topic.rate_hz)
     needed = topic.fresh_s is not None  # commands rest while nobody is armed, and a ball may be out of sight
-    age_s, rate_hz = arrivals.age_s(now_ns), arrivals.rate_hz(now_ns)
+    periodic = nominal_hz > 0  # of other topics a rate states nothing: silence of hours is as right as three at once
+    age_s, rate_hz = arrivals.age_s(now_ns), arrivals.rate_hz(now_ns) if periodic else None
     return TopicView(
         key=key,
         received=arrivals.count,
         age_s=round(age_s, 3),
+        published="periodically" if periodic else "on change",
         rate_hz=None if rate_hz is None else round(rate_hz, 2),
         nominal_hz=nominal_hz,
         stale_after_s=topic.fresh_s,

@@ -19,6 +19,7 @@ SCRIPTS = (
     "scales.js",
     "columns.js",
     "run.js",
+    "liveness.js",
     "places.js",
     "subgoals.js",
     "field.js",

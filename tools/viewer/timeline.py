@@ -20,6 +20,7 @@ from tailor.tools.viewer.event_fields import Fields
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.plan_graph import plan_graph
 from tailor.tools.viewer.run_facts import run_facts
+from tailor.tools.viewer.silence import Silence
 
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
@@ -62,6 +63,7 @@ class RunTimeline:
         self.robot = robot
         self._explainer = explainer
         self._scenes = RobotScenes()
+        self._silence = Silence()
         self._action = (-1, "")
         self._last: dict[str, Any] = {}  # by kind: last fields of states
         self._outlines: dict[str, Outline] = {}  # by kind: the last ones
@@ -78,7 +80,14 @@ class RunTimeline:
         owner, _, topic = key.partition("/")
         if topic and self.robot and owner not in ("exec", self.robot):
             return []
-        return [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
+        self._silence.note(message, at_s)
+        events = [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
+        return self.silences(at_s) + events
+
+    def silences(self, at_s: float) -> list[Event]:
+        """An event if executive or driver have fallen silent by now, or are heard again."""
+        silent = self._silence.change(at_s)
+        return [] if silent is None else [Event(at_s, "silent", silent)]
 
     def _rows(self, at_s: float, key: str, message: m.Message) -> Rows:
         match message:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from tailor.schemas import messages as m
 from tailor.tools.viewer import timeline as timeline_module
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.broadcast import EventBroadcast
-from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.server import MAX_PAGES, serving
 from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.recorded_messages import recorded_events
@@ -368,14 +369,77 @@ def test_the_stop_button_shows_what_the_drivers_confirm_also_after_a_restart_of_
     with served(0, {"agilo": m.DriverState(0, "estopped", "e-stop", "", 1, "", 0)}) as port:
         opened(browser, f"http://127.0.0.1:{port}/")
         browser.value(press)
-        browser.wait(f"{outcome} === 'agilo is estopped'")
+        browser.wait(f"{outcome}.endsWith(': agilo is estopped')")
         assert count(browser, ".outcome.confirmed") == 1
     browser.wait("document.documentElement.dataset.connection === 'lost'")
     with served(port, {}):
         browser.value(press)  # before the page has connected again and received the new server's token
-        browser.wait(f"{outcome} === 'no driver is on the bus'")
+        browser.wait(f"{outcome}.endsWith('NOT CONFIRMED: no driver is heard on the bus')")
         assert count(browser, ".outcome.failed") == 1
     assert all("403" in error for error in browser.errors), "nothing but the refusal of the old token"
+
+
+def test_a_press_without_a_bus_says_so_and_not_that_there_is_no_driver(browser: Browser) -> None:
+    endpoint = StopEndpoint(dict, connected=lambda: False)
+    with serving(page("live", [], live=True, stop_token=endpoint.token), EventBroadcast(), 0, endpoint) as port:
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait("document.documentElement.dataset.connection === 'open'")
+        browser.value("document.querySelector('button.stop').click()")
+        browser.wait("document.querySelector('.outcome.failed') !== null")
+        assert "not connected to the bus" in text(browser, ".outcome")
+    browser.errors.clear()  # of the server that is gone
+
+
+def test_a_confirmed_stop_is_shown_until_the_driver_is_released(browser: Browser) -> None:
+    broadcast = EventBroadcast()
+    endpoint = StopEndpoint(lambda: {"agilo": m.DriverState(0, "estopped", "e-stop", "", 1, "", 0)})
+    with serving(page("live", [], live=True, stop_token=endpoint.token), broadcast, 0, endpoint) as port:
+        broadcast.publish([Event(1.0, "driver", {"mode": "estopped", "reason": "e-stop"})])
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait("Number(document.documentElement.dataset.rows) > 0")
+        browser.value("document.querySelector('button.stop').click()")
+        browser.wait("document.querySelector('.outcome.confirmed') !== null")
+        broadcast.publish([Event(2.0, "driver", {"mode": "armed", "reason": ""})])
+        browser.wait("document.querySelector('.outcome').textContent === ''")
+    browser.errors.clear()
+
+
+def test_what_was_heard_last_is_not_shown_as_live(browser: Browser) -> None:
+    gone = "document.querySelector('#heading .gone').textContent"
+    broadcast = EventBroadcast()
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        broadcast.publish([Event(1.0, "state", {"mode": "EXECUTING", "reason": "", "result": ""})])
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait(f"{AT} === 1")
+        broadcast.beat(1.2, bus=True)
+        assert browser.value(gone) == ""
+        broadcast.publish([Event(1.6, "silent", {"executive": 1.0})])
+        broadcast.beat(5.0, bus=True)
+        browser.wait(f"{gone}.startsWith('NOT LIVE: executive silent for 4.0 s.')")
+        assert browser.value("document.title") == "NOT LIVE: live"
+        broadcast.publish([Event(6.0, "silent", {})])
+        browser.wait(f"{gone} === ''")
+        broadcast.beat(6.1, bus=False)
+        browser.wait(f"{gone}.startsWith('NOT LIVE: the viewer has lost the bus.')")
+        browser.wait(f"{gone}.startsWith('NOT LIVE: the viewer does not respond.')")  # no beat for three seconds
+        broadcast.beat(6.2, bus=True)
+        browser.wait(f"{gone} === ''")
+    browser.wait(f"{gone}.startsWith('NOT LIVE: the viewer does not respond.')")
+    browser.errors.clear()
+
+
+def test_a_page_too_many_says_so_and_is_served_when_another_one_closes(browser: Browser) -> None:
+    broadcast = EventBroadcast()
+    gone = "document.querySelector('#heading .gone').textContent"
+    with serving(page("live", [], live=True), broadcast, 0) as port, ExitStack() as others:
+        for _ in range(MAX_PAGES):
+            others.enter_context(broadcast.subscribe())
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait(f"{gone}.includes('serves no more pages')")
+        others.close()
+        browser.wait("document.documentElement.dataset.connection === 'open'")
+        browser.wait(f"{gone} === ''")
+    browser.errors.clear()
 
 
 def test_a_recorded_page_has_no_stop_button(browser: Browser, soccer: str) -> None:

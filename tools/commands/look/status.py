@@ -11,23 +11,17 @@ import json
 import os
 import sys
 import time
-from contextlib import ExitStack
 from dataclasses import asdict
-
-from rich.console import Console, Group
-from rich.live import Live
 
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
-from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import finite
 from tailor.tools.cli.terminal import table_console
-from tailor.tools.operator.stop_button import StopButton
+from tailor.tools.status.live_view import LiveView
 from tailor.tools.status.panel import panel
 from tailor.tools.status.picture import Picture
-from tailor.tools.status.stop_key import StopKey
 from tailor.tools.status.system_model import SystemModel
 from tailor.tools.status.watcher import Watcher
 
@@ -36,8 +30,6 @@ MIN_S, MAX_S = 0.2, 3600.0
 COMPLETE_S = 1.2  # by then an executive has published what it requires, which it does once a second
 NICENESS = 10  # the executive has priority over the observer
 DRAIN_S = 0.05
-KEY_S = 0.02  # from a key to the e-stop, at most
-DRAW_NS = 250_000_000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -58,25 +50,25 @@ def run(arguments: argparse.Namespace) -> int:
     seconds = OBSERVE_S if arguments.seconds is None else arguments.seconds
     if not MIN_S <= seconds <= MAX_S:
         raise UsageError(f"--seconds is {seconds:g}, expected {MIN_S:g} to {MAX_S:g}")
-    endpoint = bus_settings(arguments).endpoint
-    stop = stop_on_signals()
-    with open_bus(arguments, "observer") as session, ExitStack() as stack:
-        # The stop key has a session of its own: a flood of all that is observed must not delay it.
-        key = StopKey(StopButton(stack.enter_context(open_bus(arguments, "people")))) if live else None
-        if key is None:  # with a stop key it must not wait for the CPU
-            os.nice(NICENESS)
-        codec.prime()
-        queue, subscription = session.subscribe_all("**")
-        began_ns = time.monotonic_ns()
-        model = SystemModel(began_ns)
-        watcher = Watcher(queue, model, began_ns)
-        picture = _watch(key, model, watcher, endpoint, stop) if key else _observe(model, watcher, seconds, stop)
-        subscription.undeclare()
+    endpoint, stop = bus_settings(arguments).endpoint, stop_on_signals()
+    picture = LiveView(arguments, stop).run() if live else _once(arguments, seconds, stop)
     if arguments.json:
         print(json.dumps(asdict(picture), allow_nan=False))
     else:
         table_console().print(panel(picture, endpoint))
     return 0 if picture.healthy else 1
+
+
+def _once(arguments: argparse.Namespace, seconds: float, stop: Stop) -> Picture:
+    with open_bus(arguments, "observer") as session:
+        os.nice(NICENESS)
+        codec.prime()
+        queue, subscription = session.subscribe_all("**")
+        began_ns = time.monotonic_ns()
+        model = SystemModel(began_ns)
+        picture = _observe(model, Watcher(queue, model, began_ns), seconds, stop)
+        subscription.undeclare()
+        return picture
 
 
 def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -> Picture:
@@ -88,26 +80,4 @@ def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -
             break
         time.sleep(DRAIN_S)
         watcher.poll(time.monotonic_ns())
-    return model.picture(time.monotonic_ns())
-
-
-def _watch(key: StopKey, model: SystemModel, watcher: Watcher, endpoint: str, stop: Stop) -> Picture:
-    """The live view, until Ctrl-C or q."""
-    console = Console(highlight=False, markup=False)
-    drawn_ns = 0
-    with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
-        while not stop.requested:
-            now_ns = time.monotonic_ns()
-            keys = keyboard.read()
-            if b"q" in keys:
-                break
-            key.poll(keys)
-            if now_ns - drawn_ns >= DRAW_NS:
-                drawn_ns = now_ns
-                watcher.poll(now_ns)
-                picture = model.picture(now_ns)
-                shown = (key.line(picture, keyboard.there), panel(picture, endpoint))
-                live.update(Group(*shown), refresh=True)
-            time.sleep(KEY_S)
-        key.finish()
     return model.picture(time.monotonic_ns())

@@ -1,12 +1,15 @@
 // The page's top line: what runs, and how it stands at the shown moment.
 
 class Heading {
-  constructor(run, title) {
+  constructor(run, title, liveness) {
     this.run = run;
+    this.title = title;
+    this.liveness = liveness;
     const element = document.getElementById("heading");
     this.facts = html("span", { class: "facts" });
     this.now = html("span", { class: "now" });
-    element.replaceChildren(html("h1", { text: title }), this.facts, this.now);
+    this.gone = html("strong", { class: "gone" });
+    element.replaceChildren(html("h1", { text: title }), this.facts, this.now, this.gone);
   }
 
   show(at) {
@@ -30,6 +33,16 @@ class Heading {
     const driver = this.run.last("driver", at);
     if (driver && driver.mode !== "armed") parts.push(pill(driver.mode, driver.reason, `driver ${driver.mode}`));
     this.now.replaceChildren(...parts);
+    this.warn(this.liveness.words(at));
+  }
+
+  /** What was heard last must not look like the present. */
+  warn(words) {
+    const { live } = this.liveness;
+    const gone = words.join(", ");
+    this.now.classList.toggle("past", words.length > 0);
+    this.gone.textContent = gone && live ? `NOT LIVE: ${gone}. The page shows what was heard last.` : gone;
+    if (live) document.title = gone ? `NOT LIVE: ${this.title}` : this.title;
   }
 }
 

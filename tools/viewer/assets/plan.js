@@ -32,7 +32,8 @@ class PlanGraph {
     const achieved = this.run.last("state", at)?.result === "achieved";
     const done = new Set([...ids(base)].filter((id) => achieved || !left.has(id)));
     if (achieved) done.add("goal");
-    const acting = (this.run.last("action", at)?.index ?? -1) >= 0;
+    const alive = !this.run.silent(at).some(([part]) => part === "executive");
+    const acting = alive && (this.run.last("action", at)?.index ?? -1) >= 0;
     const running = acting ? (this.run.last("subgoals", at)?.actions[0]?.step ?? null) : null;
     return { base, done, running };
   }

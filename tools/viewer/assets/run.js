@@ -8,6 +8,8 @@ class Run {
     this.start = 0;
     this.end = 0;
     this.version = 0; // changes with every event
+    this.now = 0; // of a live run, by the viewer's last sign of life
+    this.bus = true; // whether the viewer is connected to the bus
   }
 
   /** Add one event as the server writes it: [at, kind, fields]. */
@@ -29,6 +31,19 @@ class Run {
     for (const row of samples) rows.push(row);
     this.end = Math.max(this.end, rows[rows.length - 1].at);
     this.version += samples.length;
+  }
+
+  /** A sign of life of the viewer, at a time of the run. */
+  beat(at, { bus }) {
+    this.now = at;
+    this.bus = bus;
+  }
+
+  /** Parts of the system that are silent at a time, each with the seconds since their last message. */
+  silent(at) {
+    const now = at >= this.end ? Math.max(at, this.now) : at;
+    const { at: _, ...parts } = this.last("silent", at) ?? {};
+    return Object.entries(parts).map(([part, heard]) => [part, now - heard]);
   }
 
   all(kind) {

@@ -3,18 +3,42 @@
 const STOP_WAIT_MS = 4000; // longer than the server waits for the drivers
 const TOKEN_WAIT_MS = 3000; // longer than a page waits before it connects again
 
-/** `token` gives the server's present token. */
-function stopButton(token) {
-  const outcome = html("span", { class: "outcome", role: "alert" });
-  const button = html("button", { class: "stop", type: "button", text: "STOP", title: "emergency stop of every driver" });
-  button.addEventListener("click", async () => {
-    outcome.className = "outcome";
-    outcome.textContent = "stopping …";
-    const [confirmed, words] = await pressed(token);
-    outcome.className = confirmed ? "outcome confirmed" : "outcome failed";
-    outcome.textContent = words;
-  });
-  return html("div", { class: "stopping" }, button, outcome);
+class StopButton {
+  /** `token` gives the server's present token. */
+  constructor(run, token) {
+    this.run = run;
+    this.token = token;
+    this.outcome = html("span", { class: "outcome", role: "alert" });
+    const title = "emergency stop of every driver";
+    const button = html("button", { class: "stop", type: "button", text: "STOP", title, onclick: () => this.press() });
+    this.element = html("div", { class: "stopping" }, button, this.outcome);
+    this.confirmedAt = null; // the time of the run, while the outcome holds
+  }
+
+  async press() {
+    this.confirmedAt = null;
+    this.outcome.className = "outcome";
+    this.outcome.textContent = "stopping …";
+    const pressedAt = new Date().toLocaleTimeString("en-GB");
+    const [confirmed, words] = await pressed(this.token);
+    this.confirmedAt = confirmed ? this.run.end : null;
+    this.outcome.className = confirmed ? "outcome confirmed" : "outcome failed";
+    this.outcome.textContent = `${pressedAt}: ${words}`;
+  }
+
+  /** A driver that was released since is stopped no longer, so the outcome goes. */
+  show() {
+    const { at, mode } = this.run.last("driver") ?? {};
+    if (this.confirmedAt !== null && at > this.confirmedAt && mode !== "estopped") this.forget();
+  }
+
+  /** Another run: what drivers of the last one confirmed says nothing about its drivers. */
+  forget() {
+    if (this.confirmedAt === null) return; // what was not confirmed stays until the next press
+    this.confirmedAt = null;
+    this.outcome.className = "outcome";
+    this.outcome.textContent = "";
+  }
 }
 
 /** Whether every driver has confirmed, and the words for it. A server that was restarted refuses the old token. */
@@ -24,9 +48,10 @@ async function pressed(token) {
     let response = await post(old);
     if (response.status === 403 && (await renewed(token, old))) response = await post(token());
     if (!response.ok) return [false, `refused (${response.status}); use tailor estop`];
-    const { confirmed, drivers } = await response.json();
+    const { confirmed, drivers, connected } = await response.json();
+    if (!connected) return [false, "NOT CONFIRMED: the viewer is not connected to the bus; use tailor estop"];
     const modes = Object.entries(drivers).map(([robot, mode]) => `${robot} is ${mode}`);
-    return [confirmed, modes.join(", ") || "no driver is on the bus"];
+    return [confirmed, modes.join(", ") || "NOT CONFIRMED: no driver is heard on the bus"];
   } catch {
     return [false, "NOT CONFIRMED: the viewer does not respond; use tailor estop"];
   }

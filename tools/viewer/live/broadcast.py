@@ -15,6 +15,7 @@ from tailor.tools.viewer.timeline import Event, is_sample
 
 KEEP_S = 600.0  # of samples; all other events are kept from the start
 MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
+BEAT = "now"  # kind of an event that is not kept
 OUTLINE = "outline "  # starts the kinds of outlines, which a moving arm sends as often as samples; the newest is kept
 
 
@@ -71,6 +72,25 @@ class EventBroadcast:
             self._forget(events[-1].at_s)
             for page in self._pages:
                 page.put(batch)
+
+    def beat(self, at_s: float, bus: bool) -> None:
+        """Send every page a sign of life; a page that receives none for seconds shows that it is not live.
+
+        Args:
+          at_s: Now, seconds on the time axis of the run.
+          bus: Whether the viewer is connected to the bus.
+        """
+        batch = encoded([Event(at_s, BEAT, {"bus": bus})])
+        with self._lock:
+            for page in self._pages:
+                page.put(batch)
+
+    def restart(self) -> None:
+        """Forget the run, and disconnect all pages; they connect again."""
+        with self._lock:
+            self._events, self._forgot_s = [], 0.0
+            for page in self._pages:
+                page.close()
 
     def close(self) -> None:
         """Disconnect all pages and accept no more."""

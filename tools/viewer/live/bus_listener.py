@@ -23,6 +23,7 @@ from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 POLL_NS = 50_000_000  # 20 updates of the page a second
+BEAT_NS = 500_000_000  # between beats; pages take three seconds without one for a viewer that hangs
 
 
 class BusListener:
@@ -35,6 +36,7 @@ class BusListener:
       sender: Leave out executives whose id does not begin with this.
       now_ns: Monotonic time.
       wall: Unix nanoseconds, for the stamps of reception.
+      connected: Whether the bus is connected.
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class BusListener:
         sender: str,
         now_ns: int,
         wall: Callable[[], int] = wall_ns,
+        connected: Callable[[], bool] = lambda: True,
     ) -> None:
         self._intake = intake
         self._timeline = timeline
@@ -52,6 +55,8 @@ class BusListener:
         self._sender = sender
         self._began_ns: int | None = None
         self._wall = wall
+        self._connected = connected
+        self._beat_ns = now_ns - BEAT_NS
         self._previous = Instant(now_ns, wall())
 
     def poll(self, now_ns: int) -> None:
@@ -63,7 +68,11 @@ class BusListener:
             if message is not None and self._wanted(raw):
                 events += self._timeline.events_of(self._at_s(raw, now), raw.key, message)
         self._previous = now
-        self._broadcast.publish(events)
+        now_s = 0.0 if self._began_ns is None else (now_ns - self._began_ns) / 1e9
+        self._broadcast.publish(events + self._timeline.silences(now_s))
+        if now_ns - self._beat_ns >= BEAT_NS:
+            self._beat_ns = now_ns
+            self._broadcast.beat(now_s, self._connected())
 
     def run(self, clock: Clock, stopped: Callable[[], bool]) -> None:
         """Poll periodically until `stopped` returns True."""

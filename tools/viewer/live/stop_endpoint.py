@@ -27,10 +27,15 @@ class StopEndpoint:
       token: Random; the page sends it in the header TOKEN_HEADER.
     """
 
-    def __init__(self, press: Callable[[], Mapping[str, DriverState]]) -> None:
-        """`press`: stops every driver and returns their states, by robot; called from any thread."""
+    def __init__(
+        self, press: Callable[[], Mapping[str, DriverState]], connected: Callable[[], bool] = lambda: True
+    ) -> None:
+        """`press`: stops every driver and returns their states, by robot; `connected`: whether it reaches the bus.
+
+        Both are called from any thread.
+        """
         self.token = secrets.token_urlsafe(32)
-        self._press = press
+        self._press, self._connected = press, connected
 
     def refusal(self, headers: Message, origins: set[str]) -> HTTPStatus | None:
         """Why a POST is refused; None if it is not.
@@ -47,7 +52,8 @@ class StopEndpoint:
         return None
 
     def pressed(self) -> bytes:
-        """Stop every driver; a JSON object: whether all have confirmed, and the mode of each."""
+        """Stop every driver; a JSON object: whether all have confirmed, the mode of each, and whether the bus heard."""
         states = self._press()
         modes = {robot: state.mode for robot, state in sorted(states.items())}
-        return json.dumps({"confirmed": all_stopped(states), "drivers": modes}).encode()
+        answer = {"confirmed": all_stopped(states), "drivers": modes, "connected": self._connected()}
+        return json.dumps(answer).encode()

@@ -28,7 +28,7 @@ class SlowButton:
     """A button whose press lasts until the test releases it."""
 
     def __init__(self):
-        self.begun, self.released = Semaphore(0), Event()
+        self.begun, self.released, self.connected = Semaphore(0), Event(), True
 
     def press(self):
         self.begun.release()
@@ -107,7 +107,33 @@ def test_the_line_of_the_stop_key_shows_what_became_of_it():
     key.poll(b"s")
     key.finish()
     assert key.line(stopped, keyboard=True).plain.endswith("pressed: agilo is estopped")
-    assert key.line(Feed().picture(), keyboard=True).plain.endswith("pressed: no driver is on the bus")
+    unheard = "pressed: NOT CONFIRMED: no driver is heard on the bus"
+    assert key.line(Feed().picture(), keyboard=True).plain.endswith(unheard)
+
+
+def test_what_a_driver_confirmed_before_it_fell_silent_is_not_shown_as_its_mode():
+    button = SlowButton()
+    button.released.set()
+    key, feed = StopKey(button), Feed()
+    key.poll(b"s")
+    key.finish()
+    feed.run(1.0, driver=driver("estopped", "e-stop", ""))
+    feed.now_s = 4.0
+    assert key.line(feed.picture(), keyboard=True).plain.endswith("pressed: agilo is silent")
+    button.connected = False
+    assert "NOT CONFIRMED: the bus is lost" in key.line(feed.picture(), keyboard=True).plain
+
+
+def test_a_topic_that_is_published_on_change_has_no_rate():
+    feed = Feed()
+    for _ in range(3):
+        feed.put("estop", EStop(False))
+    picture = feed.run(7.0)
+    topic = next(topic for topic in picture.topics if topic.key == "estop")
+    assert (topic.published, topic.rate_hz, topic.received) == ("on change", None, 3)
+    (row,) = [line.split() for line in drawn(picture) if line.startswith("estop ")]
+    assert row[:3] == ["estop", "on", "change"]
+    assert next(topic for topic in picture.topics if topic.key == "agilo/odom").published == "periodically"
 
 
 def test_of_a_flood_a_part_is_read_so_that_keys_are_noticed():

@@ -65,14 +65,22 @@ def post(port, token="", path="/stop", method="POST", body=None, **headers):
 
 def test_a_press_stops_the_drivers_and_answers_what_they_confirm(live, button):
     status, content = post(*live)
-    assert (status, json.loads(content)) == (200, {"confirmed": True, "drivers": {"agilo": "estopped"}})
+    assert (status, json.loads(content)) == (
+        200,
+        {"confirmed": True, "drivers": {"agilo": "estopped"}, "connected": True},
+    )
     assert button.presses == 1
 
 
 @pytest.mark.parametrize("modes", [{}, {"agilo": "armed"}, {"agilo": "estopped", "nomad": "stopped"}])
 def test_what_was_not_confirmed_is_no_success(modes):
     endpoint = StopEndpoint(Button(**modes).press)
-    assert json.loads(endpoint.pressed()) == {"confirmed": False, "drivers": modes}
+    assert json.loads(endpoint.pressed()) == {"confirmed": False, "drivers": modes, "connected": True}
+
+
+def test_a_press_without_a_bus_answers_that_it_reached_nothing():
+    endpoint = StopEndpoint(Button().press, connected=lambda: False)
+    assert json.loads(endpoint.pressed()) == {"confirmed": False, "drivers": {}, "connected": False}
 
 
 def test_the_page_that_is_served_holds_the_token_and_a_recorded_one_no_button(live):

@@ -142,7 +142,8 @@ def test_what_arrives_on_the_bus_reaches_the_page_with_its_time() -> None:
     intake.put(raw(m.Odometry(0, 1.5, 0.0, 0.0, 0.2, 0.0), "agilo/odom", wall_ns=10**18 + 250_000_000))
     listener.poll(10**9)
     with broadcast.subscribe() as page:
-        events = json.loads(page.next(0))
+        *events, (_, last, silent) = json.loads(page.next(0))
+    assert (last, silent) == ("silent", {"executive": 0.0}), "its status is a second old"
     assert [kind for _, kind, _ in events] == ["state", "action", "belief", "odom"]
     assert events[-1][0] == 0.25
     assert events[-1][2]["x"] == 1.5
@@ -191,3 +192,35 @@ def test_damaged_foreign_and_unwanted_messages_are_left_out() -> None:
     BusListener(intake, RunTimeline(), broadcast, "ab", 0).poll(1)
     with broadcast.subscribe() as page:
         assert json.loads(page.next(0)) == []
+
+
+def test_a_listener_sends_signs_of_life_and_the_silence_of_what_it_heard_although_nothing_arrives() -> None:
+    intake, broadcast = IngestQueue(), EventBroadcast()
+    intake.put(raw(status()))
+    listener = BusListener(intake, RunTimeline(), broadcast, "", 0, connected=lambda: False)
+    with broadcast.subscribe() as page:
+        for now_ns in (4 * 10**8, 4 * 10**8 + 1, 3 * 10**9):
+            listener.poll(now_ns)
+        batches = [json.loads(page.next(0)) for _ in range(5)]
+    assert [[kind for _, kind, _ in batch] for batch in batches] == [
+        [],
+        ["state", "action", "belief"],
+        ["now"],
+        ["silent"],
+        ["now"],
+    ]
+    assert batches[2][0][2] == {"bus": False}
+    assert batches[3][0] == [3.0, "silent", {"executive": 0.0}]
+    with broadcast.subscribe() as later:
+        assert "now" not in later.next(0), "a sign of life is not kept"
+
+
+def test_another_run_begins_with_an_empty_page() -> None:
+    broadcast = EventBroadcast()
+    broadcast.publish([tick(0.0)])
+    with broadcast.subscribe() as page:
+        broadcast.restart()
+        assert page.lost
+    assert not broadcast.closed
+    with broadcast.subscribe() as page:
+        assert page.next(0) == "[]"

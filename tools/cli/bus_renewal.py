@@ -1,0 +1,33 @@
+"""Notices that the bus of this machine was started anew. Its passwords are new: zenoh cannot reconnect with the old."""
+
+from __future__ import annotations
+
+import argparse
+
+from tailor.runtime.bus.rights.run_folder import run_folder
+from tailor.runtime.bus.session import Session
+from tailor.tools.cli.endpoint import bus_settings
+
+GONE_NS = 1_000_000_000  # without a router; zenoh reconnects to an open bus by itself before
+CHECK_NS = 200_000_000
+
+
+class BusRenewal:
+    """Watches a session of a command that outlives the bus."""
+
+    def __init__(self, arguments: argparse.Namespace, session: Session, now_ns: int) -> None:
+        """`arguments`: parsed flags of `configure_bus`; `now_ns`: monotonic time."""
+        settings = bus_settings(arguments)
+        self._folder = None if settings.key else run_folder(settings.endpoint)  # a key outlives the bus
+        self._session = session
+        self._connected_ns = self._checked_ns = now_ns
+
+    def due(self, now_ns: int) -> bool:
+        """Whether the session is cut off and a bus runs: new sessions have to be opened."""
+        if now_ns - self._checked_ns < CHECK_NS:
+            return False
+        self._checked_ns = now_ns
+        if self._session.connected:
+            self._connected_ns = now_ns
+        gone = now_ns - self._connected_ns > GONE_NS
+        return gone and self._folder is not None and self._folder.running()

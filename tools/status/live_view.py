@@ -1,0 +1,102 @@
+"""The live view of a system in a terminal, with its stop key, across restarts of the bus."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from contextlib import ExitStack
+
+from rich.console import Console, Group
+from rich.live import Live
+
+from tailor.runtime.bus.session import Session
+from tailor.runtime.stopping import Stop
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.endpoint import bus_settings, open_bus
+from tailor.tools.cli.keyboard import Keyboard
+from tailor.tools.operator.current_button import CurrentButton
+from tailor.tools.status.panel import panel
+from tailor.tools.status.picture import Picture
+from tailor.tools.status.stop_key import StopKey
+from tailor.tools.status.system_model import SystemModel
+from tailor.tools.status.watcher import Watcher
+
+KEY_S = 0.02  # from a key to the e-stop, at most
+DRAW_NS = 250_000_000
+RETRY_S = 0.2  # while the bus is starting
+
+
+class LiveView:
+    """Draws the system four times a second, until Ctrl-C or q."""
+
+    def __init__(self, arguments: argparse.Namespace, stop: Stop) -> None:
+        """`arguments`: parsed flags of `configure_bus`; `stop`: request to end."""
+        self._arguments, self._stop = arguments, stop
+        self._endpoint = bus_settings(arguments).endpoint
+        self._button = CurrentButton()
+        self._key = StopKey(self._button)
+
+    def run(self) -> Picture:
+        """The last state.
+
+        Raises:
+          UsageError: At the start no router responds, or it refuses this user.
+        """
+        with ExitStack() as sessions:
+            session = self._open(sessions)
+            codec.prime()
+            console = Console(highlight=False, markup=False)
+            with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
+                while True:
+                    model = SystemModel(time.monotonic_ns())
+                    if self._watch(session, model, keyboard, live):
+                        break
+                    if (opened := self._open_again(sessions, keyboard)) is None:
+                        break
+                    session = opened
+                self._key.finish()
+            return model.picture(time.monotonic_ns())
+
+    def _open(self, sessions: ExitStack) -> Session:
+        """The observer's session, and one of the stop key: a flood of all that is observed must not delay it."""
+        session = sessions.enter_context(open_bus(self._arguments, "observer"))
+        people = sessions.enter_context(open_bus(self._arguments, "people"))
+        sessions.enter_context(self._button.of(people))
+        return session
+
+    def _open_again(self, sessions: ExitStack, keyboard: Keyboard) -> Session | None:
+        """Sessions of the bus that was started anew; None if the view is to end."""
+        while not self._ended(keyboard.read()):
+            sessions.close()
+            try:
+                return self._open(sessions)
+            except UsageError:  # the router is not ready yet, or has ended again
+                time.sleep(RETRY_S)
+        return None
+
+    def _watch(self, session: Session, model: SystemModel, keyboard: Keyboard, live: Live) -> bool:
+        """Whether the view is to end; if not, new sessions are due."""
+        drawn_ns, began_ns = 0, time.monotonic_ns()
+        queue, subscription = session.subscribe_all("**")
+        watcher, renewal = Watcher(queue, model, began_ns), BusRenewal(self._arguments, session, began_ns)
+        try:
+            while not self._ended(keys := keyboard.read()):
+                self._key.poll(keys)
+                now_ns = time.monotonic_ns()
+                if renewal.due(now_ns):
+                    return False
+                if now_ns - drawn_ns >= DRAW_NS:
+                    drawn_ns = now_ns
+                    watcher.poll(now_ns)
+                    picture = model.picture(now_ns)
+                    shown = (self._key.line(picture, keyboard.there), panel(picture, self._endpoint))
+                    live.update(Group(*shown), refresh=True)
+                time.sleep(KEY_S)
+        finally:
+            subscription.undeclare()
+        return True
+
+    def _ended(self, keys: bytes) -> bool:
+        return self._stop.requested or b"q" in keys

@@ -1,0 +1,96 @@
+"""Serves the live page until interrupted, across restarts of the bus."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from contextlib import ExitStack
+
+from tailor.runtime.clock import MonotonicClock
+from tailor.runtime.stopping import Stop
+from tailor.schemas import codec
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.endpoint import bus_settings, open_bus
+from tailor.tools.cli.plain_text import plain
+from tailor.tools.operator.current_button import CurrentButton
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.bus_listener import BusListener
+from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
+from tailor.tools.viewer.page import page
+from tailor.tools.viewer.timeline import RunTimeline
+
+NICENESS = 10  # the executive has priority over the viewer
+RETRY_S = 0.5  # while the bus is starting
+
+
+class LiveRun:
+    """The live page of whatever runs on the bus that the flags select."""
+
+    def __init__(self, arguments: argparse.Namespace, stop: Stop) -> None:
+        """`arguments`: parsed flags of `tailor view`; `stop`: request to end."""
+        self._arguments, self._stop = arguments, stop
+        self._broadcast, self._button = EventBroadcast(), CurrentButton()
+
+    def serve(self) -> None:
+        """Serve until a stop is requested.
+
+        Raises:
+          UsageError: The port is in use; at the start no router responds, or it refuses this user.
+        """
+        with ExitStack() as stack:
+            sessions = stack.enter_context(ExitStack())
+            endpoint = self._stop_endpoint(sessions)
+            document = page("live", (), live=True, stop_token=endpoint.token if endpoint else "")
+            port = stack.enter_context(serving(document, self._broadcast, self._arguments.port, endpoint))
+            if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
+                os.nice(NICENESS)
+            codec.prime()
+            self._listen(sessions, f"http://127.0.0.1:{port}/ shows {bus_settings(self._arguments).endpoint}")
+            while not self._stop.requested:
+                sessions.close()
+                self._listen_again(sessions, endpoint is not None)
+
+    def _stop_endpoint(self, sessions: ExitStack) -> StopEndpoint | None:
+        """The page's stop button, with a session of its own; None where this user may not stop drivers."""
+        try:
+            self._take_button(sessions)
+        except UsageError as error:
+            print(f"the page has no stop button: {plain(str(error))}", flush=True)
+            return None
+        return StopEndpoint(self._button.press, lambda: self._button.connected)
+
+    def _take_button(self, sessions: ExitStack) -> None:
+        session = sessions.enter_context(open_bus(self._arguments, "people"))
+        sessions.enter_context(self._button.of(session))
+
+    def _listen(self, sessions: ExitStack, heading: str = "") -> None:
+        """Follow the bus until a stop is requested or new sessions are due."""
+        arguments, clock = self._arguments, MonotonicClock()
+        session = sessions.enter_context(open_bus(arguments, "observer"))
+        intake, subscribe_all = session.subscribe_all("**")
+        sessions.callback(subscribe_all.undeclare)
+        explainer = None if arguments.no_models else Explainer()
+        timeline, now_ns = RunTimeline(explainer, arguments.robot), clock.now_ns()
+        listener = BusListener(
+            intake, timeline, self._broadcast, arguments.sender, now_ns, connected=lambda: session.connected
+        )
+        renewal = BusRenewal(arguments, session, now_ns)
+        if heading:
+            print(f"{heading}; Ctrl-C stops it", flush=True)
+        listener.run(clock, lambda: self._stop.requested or renewal.due(clock.now_ns()))
+
+    def _listen_again(self, sessions: ExitStack, button: bool) -> None:
+        """Another run: its page begins anew."""
+        self._broadcast.beat(0.0, bus=False)  # opening a session takes up to three seconds
+        try:
+            if button:
+                self._take_button(sessions)
+            self._broadcast.restart()
+            self._listen(sessions)
+        except UsageError:  # the router is not ready yet, or has ended again
+            time.sleep(RETRY_S)
