@@ -23,7 +23,7 @@ RERUN = shutil.which("rerun")
 @pytest.fixture(scope="module")
 def soccer(tmp_path_factory):
     path = tmp_path_factory.mktemp("scene") / "soccer.mcap"
-    added, feed = add_scenes(GOLDEN / "soccer-approach-dribble.mcap", path)
+    added, feed, _ = add_scenes(GOLDEN / "soccer-approach-dribble.mcap", path)
     assert added > 150
     assert not feed.fault
     return path

@@ -45,6 +45,7 @@ class RecordedRuns:
         self._inputs: dict[tuple[str, str, int], Recorded] = {}
         recording = open_recording(path)
         everything = list(_bounded(recording))
+        self.damage = recording.damage  # of the file
         by_sender = {sender: RecordedRun(sender) for sender in executives(everything)}
         for message in everything:
             if message.sender in by_sender and message.key != ANSWER_KEY:

@@ -8,6 +8,7 @@ from pathlib import Path
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode, encode
@@ -21,11 +22,11 @@ DERIVED = tuple(ros_type(kind) for kind in (SceneShapes, FrameTransforms, LogLin
 SENDER = "5c" * 16
 
 
-def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
+def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport]:
     """Copy a recording and add the scenes of its run; markers and transforms in it are replaced.
 
     Returns:
-      Number of messages added, and the feed that made them.
+      Number of messages added, the feed that made them, and the damage of the source, which the copy's metadata states.
 
     Raises:
       UsageError: The source is no recording, or the target exists or cannot be written.
@@ -50,9 +51,11 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed]:
             origin = pack(Origin(sequences[key], recorded.log_ns, SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
             writer.write(raw, recorded.log_ns)
+    if text := recording.damage.text():
+        writer.add_metadata("copy", {"of": source.name, "damage": text})
     if not writer.close():
         raise UsageError(f"{target}: {writer.disk_error}")
-    return sequences.total(), feed
+    return sequences.total(), feed, recording.damage
 
 
 def _raw(recorded: Recorded) -> Raw:

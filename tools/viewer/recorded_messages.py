@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message, Odometry, PoseEstimate
 from tailor.schemas.typesystem import ros_type, type_of
+from tailor.tools.recordings.damage_notice import notice
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 EXECUTIVE = "exec/"
+DAMAGE = "damage"  # kind of the event that states the damage of a recording
 BETTER = ("truth", "believed")  # sources of the robot's pose; with one of them the page draws no other
 SENSED = (Odometry, PoseEstimate)  # the others: most of a recording's messages, and the slowest to decode
 
@@ -27,20 +30,24 @@ class Timed:
     message: Message
 
 
-def timed(path: Path, sender: str = "", without: Collection[type] = ()) -> Iterator[Timed]:
+def timed(
+    path: Path, sender: str = "", without: Collection[type] = (), read: Callable[[DamageReport], None] = lambda _: None
+) -> Iterator[Timed]:
     """Messages of a recording in the order of their reception, without damaged ones.
 
     Args:
       path: MCAP file.
       sender: Skip executives whose id does not begin with this.
       without: Skip messages of these types, without decoding them.
+      read: Called with the damage of the file, when all of it has been read.
 
     Raises:
       UsageError: The file is no recording, or has no readable message.
     """
     began_ns: int | None = None
     skipped = {ros_type(kind) for kind in without}
-    for recorded in open_recording(path).messages():
+    recording = open_recording(path)
+    for recorded in recording.messages():
         kind = type_of(recorded.ros_type)
         if kind is None or (recorded.key.startswith(EXECUTIVE) and not recorded.sender.startswith(sender)):
             continue
@@ -52,13 +59,25 @@ def timed(path: Path, sender: str = "", without: Collection[type] = ()) -> Itera
             yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
     if began_ns is None:
         raise UsageError(f"{path}: no readable message, expected a recording of a run")
+    read(recording.damage)
 
 
 def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:
-    """All events of a recording that the page shows, on a time axis that starts with the first message."""
-    trial = RunTimeline(robot=timeline.robot)
+    """All events of a recording that the page shows, on a time axis that starts with the first message.
+
+    The damage of a damaged one is the first event.
+    """
+    trial, damage = RunTimeline(robot=timeline.robot), DamageReport(complete=True)
+
+    def note(found: DamageReport) -> None:
+        nonlocal damage
+        damage = found
+
     better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
-    return [event for t in timed(path, sender, SENSED if better else ()) for event in _events_of(t, timeline)]
+    wanted = timed(path, sender, SENSED if better else (), note)
+    events = [event for t in wanted for event in _events_of(t, timeline)]
+    text = notice(path, damage)
+    return [Event(0.0, DAMAGE, {"text": text}), *events] if text else events
 
 
 def _events_of(t: Timed, timeline: RunTimeline) -> list[Event]:

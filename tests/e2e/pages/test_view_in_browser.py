@@ -156,7 +156,9 @@ def test_the_timeline_shows_predicted_against_actual_and_every_tick(browser: Bro
     assert text(browser, "#timeline small").startswith(f"{ticks} ticks ")
 
 
-@pytest.mark.parametrize("size", [(390, 844), (1440, 900), (1920, 1080)], ids="{0[0]}x{0[1]}".format)
+@pytest.mark.parametrize(
+    "size", [(375, 812), (390, 844), (1280, 800), (1440, 900), (1920, 1080)], ids="{0[0]}x{0[1]}".format
+)
 def test_the_page_fits_a_phone_and_screens_with_its_timeline_above_the_fold(
     browser: Browser, soccer: str, size
 ) -> None:
@@ -164,6 +166,8 @@ def test_the_page_fits_a_phone_and_screens_with_its_timeline_above_the_fold(
     browser.resize(width, height)
     opened(browser, soccer, 4.0)
     assert browser.value("document.documentElement.scrollWidth") == width
+    rights = "[...document.querySelectorAll('footer > *')].map((e) => e.getBoundingClientRect().right)"
+    assert max(browser.value(rights)) <= width, "speed and other controls can be reached"
     box = browser.value(BOX)
     footer = browser.value("document.querySelector('footer').offsetHeight")
     lanes = "[...document.querySelectorAll('#timeline [data-lane]')].map((lane) => lane.getBoundingClientRect().bottom)"
@@ -270,12 +274,46 @@ def test_a_robot_that_is_no_point_on_the_plane_gets_plots_over_time(browser: Bro
     assert browser.errors == []
 
 
+def test_a_live_page_on_a_phone_has_its_live_button_in_sight(browser: Browser) -> None:
+    broadcast = EventBroadcast()
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        browser.resize(375, 667)
+        broadcast.publish([Event(1234.5, "state", {"mode": "READY", "reason": "", "result": ""})])
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait(f"{AT} > 1234")
+        rights = "[...document.querySelectorAll('footer > *')].map((e) => e.getBoundingClientRect().right)"
+        assert max(browser.value(rights)) <= 375
+    browser.send("Emulation.clearDeviceMetricsOverride")
+    browser.errors.clear()  # of the server that is gone
+
+
+def test_a_damaged_recording_says_so_above_its_page(browser: Browser, tmp_path: Path) -> None:
+    rows = rows_of(synthetic_run.soccer_run(), RunTimeline())
+    path = written(tmp_path / "torn.html", [Event(0.0, "damage", {"text": "torn.mcap is damaged"}), *rows])
+    opened(browser, path)
+    assert "torn.mcap is damaged" in text(browser, "#heading")
+
+
+def test_an_axis_of_the_scene_has_two_numbers_at_least(browser: Browser, tmp_path: Path) -> None:
+    corners = [(-3.9, -2.9), (3.9, -2.9), (3.9, 2.9), (-3.9, 2.9)]
+    rows = [
+        Event(0.5 * k, "truth", {"x": x, "y": y, "phi": 0.0, "v": 0.5, "index": -1}) for k, (x, y) in enumerate(corners)
+    ]
+    browser.resize(1280, 800)
+    opened(browser, written(tmp_path / "room.html", rows))
+    numbers = "[...document.querySelectorAll('#scene svg text')].filter((e) => /^-?[0-9.]+$/.test(e.textContent))"
+    lefts = browser.value(f"{numbers}.map((e) => Number(e.getAttribute('x')))")
+    assert min(lefts.count(3), len(lefts) - lefts.count(3)) >= 2, "of y, whose numbers stand at the left; of x"
+    browser.send("Emulation.clearDeviceMetricsOverride")
+
+
 def test_an_arm_is_drawn_from_behind_above_its_values_over_time(browser: Browser, tmp_path: Path) -> None:
     rows = recorded_events(ROOT / "tests" / "data" / "golden" / "arm-word-I.mcap", RunTimeline())
     opened(browser, written(tmp_path / "letter.html", rows), 3.0)
     assert count(browser, "#scene path.robot.pale") == 13, "six modules, five links, column and tip"
     assert count(browser, "#scene .layers .trace") >= 4, "the pen's line, one for each stroke"
     assert count(browser, "#scene .plots svg") >= 4
+    assert count(browser, "#timeline [data-lane='speed']") == 0, "what has no speed has no curve of zeros"
     assert browser.errors == []
 
 

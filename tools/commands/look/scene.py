@@ -20,6 +20,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
 from tailor.tools.scenes.recorded_scenes import add_scenes
@@ -60,7 +61,8 @@ def _write(arguments: argparse.Namespace) -> int:
     source: Path = arguments.recording
     target: Path = arguments.output or source.with_name(f"{source.stem}-scene.mcap")
     with Console(stderr=True).status(f"reading {source}"):
-        added, feed = add_scenes(source, target)
+        added, feed, damage = add_scenes(source, target)
+    warn(source, damage)
     if feed.fault:
         print(f"the scene of {feed.robot}: {feed.fault}", file=sys.stderr)
     print(f"{target}: {added} messages added")

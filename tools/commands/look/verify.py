@@ -16,6 +16,7 @@ from tailor.executive.composition import rebuild_context
 from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
+from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 from tailor.tools.recordings.recorded_source import source_entry
 from tailor.tools.recordings.verification import Verdict, verdict_text, verify
@@ -36,6 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick or an input of one."""
     runs = RecordedRuns(arguments.recording)
+    warn(arguments.recording, runs.damage)
     if arguments.output is None:
         proofs = not arguments.without_proofs
         verdicts = [_verified(runs, run, proofs) for run in runs.runs]

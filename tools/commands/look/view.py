@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,7 @@ from tailor.tools.cli.output_files import check_output
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.recorded_messages import DAMAGE, recorded_events
 from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
@@ -70,7 +71,7 @@ def _write(arguments: argparse.Namespace) -> int:
     output: Path = arguments.output or (first.with_name("runs.html") if others else first.with_suffix(".html"))
     check_output("--output", output, (".html", ".htm"))
     with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
-        runs = {str(path) if others else path.name: _events(path, arguments) for path in recordings}
+        runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}
         text = side_by_side(output.stem, "", runs) if others else page(first.name, runs[first.name])
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
@@ -81,10 +82,19 @@ def _write(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _titles(recordings: list[Path]) -> dict[str, Path]:
+    """Recordings by name; by path only where two have one name, for a page is passed on and folders are not."""
+    names = Counter(path.name for path in recordings)
+    return {path.name if names[path.name] == 1 else str(path): path for path in recordings}
+
+
 def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
     console, explainer = Console(stderr=True), _explainer(arguments)
     with console.status(f"reading {recording}"):
         events = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
+    for event in events[:1]:
+        if event.kind == DAMAGE:
+            console.print(event.fields["text"], highlight=False, markup=False, soft_wrap=True)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     return events

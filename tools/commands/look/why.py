@@ -17,6 +17,7 @@ from rich.markup import escape
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.viewer.decisions import Decision, decisions_of, executed, in_force
 from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import Explainer, fields_of
@@ -89,7 +90,7 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
     Raises:
       UsageError: The file is no recording, has no decision, or its models are not installed.
     """
-    log = decisions_of(timed(recording, sender))
+    log = decisions_of(timed(recording, sender, read=lambda damage: warn(recording, damage)))
     at = None if at_s is None else in_force(log.decisions, at_s)
     decisions = list(executed(log.decisions)) if at_s is None else [at] if at is not None else []
     if not decisions:

@@ -118,13 +118,13 @@ class Field {
 
   gridLines(width, height) {
     const [left, right, bottom, top] = this.map.box;
-    const vertical = ticks(left, right, width / 95).flatMap((x) => {
+    const vertical = atLeastTwo(left, right, width / 95).flatMap((x) => {
       const [px] = this.map(x, 0);
       const line = svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height });
       if (px < 16 || px > width - 16) return [line]; // a number there would lie on those of y, or be cut
       return [line, svg("text", { x: px + 3, y: height - 4, text: String(x) })];
     });
-    const horizontal = ticks(bottom, top, width / 125).flatMap((y) => {
+    const horizontal = atLeastTwo(bottom, top, width / 125).flatMap((y) => {
       const [, py] = this.map(0, y);
       return [
         svg("line", { class: "grid", x1: 0, x2: width, y1: py, y2: py }),

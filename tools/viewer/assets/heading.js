@@ -9,10 +9,12 @@ class Heading {
     this.facts = html("span", { class: "facts" });
     this.now = html("span", { class: "now" });
     this.gone = html("strong", { class: "gone" });
-    element.replaceChildren(html("h1", { text: title }), this.facts, this.now, this.gone);
+    this.damage = html("strong", { class: "gone" });
+    element.replaceChildren(html("h1", { text: title }), this.facts, this.now, this.gone, this.damage);
   }
 
   show(at) {
+    this.damage.textContent = this.run.last("damage")?.text ?? "";
     const [about, state, belief] = [this.run.about(), this.run.last("state", at), this.run.last("belief", at)];
     const action = this.run.last("action", at);
     const facts = [

@@ -23,6 +23,14 @@ function ticks(from, to, count) {
   return found;
 }
 
+/** Likewise, but at least two of them well inside: one number alone gives an axis no scale. */
+function atLeastTwo(from, to, count) {
+  const inside = (to - from) / 10;
+  const found = ticks(from, to, count);
+  const enough = found.filter((v) => v > from + inside && v < to - inside).length > 1;
+  return enough || count > 20 ? found : atLeastTwo(from, to, 1.5 * count);
+}
+
 /** Smallest and largest of the numbers, widened by a share of their distance; [0, 1] where there are none. */
 function extent(values, margin = 0.06) {
   let low = Infinity;

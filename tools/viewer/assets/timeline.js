@@ -68,7 +68,8 @@ class Timeline {
       { name: "event", height: 16, draw: (x, top) => eventLane(run, x, top) },
     ];
     const source = run.source();
-    if (source) {
+    // A pen of an arm has neither a heading nor a speed: zeros would be wrong.
+    if (source && run.all(source).some((p) => p.phi !== null || p.v)) {
       const points = run.all(source).map((p) => [p.at, p.v]);
       lanes.push({
         name: "speed",

@@ -13,9 +13,10 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
-from tailor.tools.commands.look import view, why
+from tailor.tools.commands.look import picture, scene, view, why
 from tests.support import synthetic_run
 
 SENDERS = {"exec/": "ab" * 16}
@@ -54,6 +55,49 @@ def test_view_writes_the_whole_run_into_one_page(recording, tmp_path, capsys) ->
     assert max(sum(block["at"]) for block in samples) / 1e3 == pytest.approx(published[-1].time_ns / 1e9)
     ticks = [block["length"] for block in samples if block["kind"] == "tick"]
     assert sum(ticks) == sum("tick" in t.key for t in published)
+
+
+def torn(recording: Path, folder: Path) -> Path:
+    """Its first two thirds."""
+    path = folder / "torn.mcap"
+    path.write_bytes(recording.read_bytes()[: 2 * recording.stat().st_size // 3])
+    return path
+
+
+def test_the_readable_part_of_a_damaged_recording_never_passes_for_the_whole(recording, tmp_path, capsys) -> None:
+    part, output = torn(recording, tmp_path), tmp_path / "torn.html"
+    assert run(view, part, "-o", output, "--no-models") == 0
+    told = capsys.readouterr().err.replace("\n", "")
+    assert "torn.mcap is damaged: no footer" in told
+    assert "only its readable messages are shown" in told
+    (damage,) = [fields["text"] for _, kind, fields in data_in(output)["rows"] if kind == "damage"]
+    assert damage in told
+    assert run(view, recording, "-o", output, "--no-models") == 0
+    assert "damaged" not in capsys.readouterr().err + output.read_text().partition('id="data"')[2].partition("<")[0]
+
+
+def test_pictures_and_scenes_of_a_damaged_recording_say_so(recording, tmp_path, capsys) -> None:
+    part = torn(recording, tmp_path)
+    assert run(picture, part, "-o", tmp_path / "torn.png") == 0
+    assert "torn.mcap is damaged" in capsys.readouterr().err
+    assert run(scene, part, "-o", tmp_path / "scene.mcap") == 0
+    assert "torn.mcap is damaged" in capsys.readouterr().err
+    copies = dict(open_recording(tmp_path / "scene.mcap").metadata())
+    assert copies["copy"]["damage"].startswith("no footer"), "the copy itself is whole"
+
+
+def test_runs_side_by_side_are_named_without_their_folder(recording, tmp_path) -> None:
+    other = tmp_path / "other.mcap"
+    other.write_bytes(recording.read_bytes())
+    output = tmp_path / "runs.html"
+    assert run(view, recording, other, "-o", output, "--no-models") == 0
+    assert [each["title"] for each in data_in(output)["pages"]] == ["run.mcap", "other.mcap"]
+    assert str(tmp_path) not in output.read_text()
+    twin = tmp_path / "twin" / "run.mcap"
+    twin.parent.mkdir()
+    twin.write_bytes(recording.read_bytes())
+    assert run(view, recording, twin, "-o", output, "--no-models") == 0
+    assert [each["title"] for each in data_in(output)["pages"]] == [str(recording), str(twin)]
 
 
 def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -> None:
