@@ -51,11 +51,14 @@ def _section(folder: Path, name: str) -> str:
     """Title with a link, time of the run, main figures of the first rows."""
     file = folder / f"{name}.json"
     report = json.loads(file.read_text("utf-8"))
-    when = time.strftime("%Y-%m-%d %H:%M", time.localtime(file.stat().st_mtime))
+    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(file.stat().st_mtime))
     every: list[dict[str, Any]] = report["rows"]
     rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
     columns = [column for column in MAIN if any(column in row for row in rows)]
     cells = [["" if row.get(column) is None else shown(row[column]) for column in columns] for row in rows]
     titles = [column_title(column) for column in columns]
+    if len(rows) < len(every):
+        left_out = [f"{len(every) - len(rows)} rows are on its page", *[""] * (len(columns) - 1)]
+        cells.insert(-1, left_out)  # else the last row passes for the next one
     heading = f'<h2><a href="{name}.html">{html.escape(report["title"])}</a></h2>'
     return f"{heading}{table(f'{name}, {when}', titles, cells)}"

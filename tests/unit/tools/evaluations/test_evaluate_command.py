@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 import types
 
@@ -131,6 +132,16 @@ def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     publish_report(Report("first", "The first one", rows, (), {}, {}), True, tmp_path)
     text = write_overview(tmp_path, ["first"]).read_text()
     assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
+    assert text.index("row-4") < text.index("4 rows are on its page") < text.index("row-9")
+    publish_report(Report("first", "The first one", rows[:6], (), {}, {}), True, tmp_path)
+    assert "rows are on its page" not in write_overview(tmp_path, ["first"]).read_text()
+
+
+def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
+    publish_report(Report("first", "The first one", [{"scenario": "one"}], (), {}, {}), True, tmp_path)
+    text = write_overview(tmp_path, ["first"]).read_text()
+    assert '<meta name="viewport" content="width=device-width' in text
+    assert re.search(r"first, \d{4}-\d\d-\d\d \d\d:\d\d UTC", text)
 
 
 def test_json_of_a_report_has_its_rows(tmp_path, capsys):
