@@ -219,23 +219,27 @@ class Session:
             return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
         return False, f"no service at {key}"
 
-    def subscribe_all(self, pattern: str) -> tuple[IngestQueue, Subscriptions]:
+    def subscribe_all(self, pattern: str, queue: IngestQueue | None = None) -> tuple[IngestQueue, Subscriptions]:
         """Subscribe to all keys that match a pattern of plain keys; undeclare the returned subscriptions at the end.
 
         What comes under a key for rmw_zenoh gets its plain key, if this session's profile hears it.
+
+        Args:
+          pattern: Of keys.
+          queue: Takes what is received; None: a new one.
         """
-        queue = IngestQueue()
+        filled = IngestQueue() if queue is None else queue
 
         def put(sample: zenoh.Sample) -> None:  # copied in zenoh's thread: a waiting sample pins its whole batch
             raw = as_plain(received_raw(sample, wall_ns()), self.keys)
             if raw is not None:
-                queue.put(raw)
+                filled.put(raw)
 
         patterns = [pattern]
         if self.keys.announces and pattern != "**":
             patterns.append(f"{self.keys.domain}/{pattern}/*/*")  # any type and hash; `as_plain` compares them
         handler: Any = zenoh.handlers.Callback(put, indirect=False)
-        return queue, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
+        return filled, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
 
 
 def _is_one_key(key: str) -> bool:

@@ -21,7 +21,6 @@ from rich.live import Live
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer
-from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
@@ -34,6 +33,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.recordings.recorder_bus import RecorderBus
 
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9
 MAX_LIMIT = 1e9  # MB or seconds, beyond any disk and run
@@ -76,29 +76,33 @@ def run(arguments: argparse.Namespace) -> int:
         check_within(getattr(arguments, name), MAX_LIMIT, f"--{name.replace('_', '-')}")
     wanted = selection(arguments.topics, arguments.exclude)
     stop, notifier = stop_on_signals(), Notifier.from_environment()
-    with open_bus(arguments, "people" if arguments.write else "recorder", sender=sender_of(arguments)) as session:
-        if arguments.write:
-            accepted, response = session.call(SNAPSHOT_KEY, "requested")
-            if arguments.json:
-                print(json.dumps({"accepted": accepted, "answer": response}))
-            else:
-                print(plain(response), file=sys.stdout if accepted else sys.stderr)
-            return 0 if accepted else 1
-        queue, subscription = session.subscribe_all("**")
-        recorder = _recorder(arguments, queue, wanted)
-        requests = session.service_server(SNAPSHOT_KEY) if isinstance(recorder, SnapshotRecorder) else None
+    if arguments.write:
+        return _write(arguments)
+    bus = RecorderBus(arguments, SNAPSHOT_KEY if arguments.snapshot else "")
+    with bus.opened():
+        recorder = _recorder(arguments, bus.queue, wanted)
         if not (arguments.quiet or notifier.supervised):
             print(_beginning(arguments), file=sys.stderr, flush=True)
         notifier.ready()
-        _record(recorder, requests, stop, session, notifier, quiet=arguments.quiet)
+        _record(recorder, bus, stop, notifier, quiet=arguments.quiet)
         notifier.stopping()
-        subscription.undeclare()
-        health = recorder.close()
+    health = recorder.close()
     if arguments.json:
         print(json.dumps(_json_value(health)), flush=True)
     elif not arguments.quiet or health.drops or health.unwritten or health.mixed or health.disk_error:
         print(_line(health), file=sys.stderr)
     return 1 if health.drops or health.unwritten or health.disk_error else 0
+
+
+def _write(arguments: argparse.Namespace) -> int:
+    """Request a snapshot; 0 if it is accepted."""
+    with open_bus(arguments, "people", sender=sender_of(arguments)) as session:
+        accepted, response = session.call(SNAPSHOT_KEY, "requested")
+    if arguments.json:
+        print(json.dumps({"accepted": accepted, "answer": response}))
+    else:
+        print(plain(response), file=sys.stdout if accepted else sys.stderr)
+    return 0 if accepted else 1
 
 
 def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection) -> Recorder | SnapshotRecorder:
@@ -118,9 +122,8 @@ def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selecti
 
 def _record(
     recorder: Recorder | SnapshotRecorder,
-    requests: ServiceServer | None,
+    bus: RecorderBus,
     stop: Stop,
-    session: Session,
     notifier: Notifier,
     quiet: bool,
 ) -> None:
@@ -129,15 +132,16 @@ def _record(
         connected, status = True, ""
         while not stop.requested:
             recorder.step(time.monotonic_ns())
-            if session.connected != connected:
+            bus.renew(time.monotonic_ns())
+            if bus.connected != connected:
                 connected = not connected
                 print(RECONNECTED if connected else DISCONNECTED, file=sys.stderr, flush=True)
             notifier.alive()
             if (losses := _losses(recorder.health, connected)) != status:
                 status = losses
                 notifier.status(status)
-            if requests is not None and isinstance(recorder, SnapshotRecorder):
-                _serve(recorder, requests)
+            if bus.requests is not None and isinstance(recorder, SnapshotRecorder):
+                _serve(recorder, bus.requests)
             if live is not None:
                 live.update(_line(recorder.health))
             time.sleep(PERIOD_S)

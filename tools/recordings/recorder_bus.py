@@ -1,0 +1,66 @@
+"""The recorder's session: all that is published goes into one queue, across restarts of the bus."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.service import ServiceServer
+from tailor.runtime.bus.session import Session
+from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.endpoint import open_bus, sender_of
+
+
+class RecorderBus:
+    """Session of a recorder; when the bus was started anew, another one with the passwords of that run.
+
+    Attributes:
+      queue: What was received.
+      requests: Requests of the service; None without one, or while there is no session.
+    """
+
+    def __init__(self, arguments: argparse.Namespace, service: str) -> None:
+        """`arguments`: parsed flags of `configure_bus` and `configure_sender`; `service`: its key, empty for none."""
+        self.queue = IngestQueue()
+        self.requests: ServiceServer | None = None
+        self._arguments, self._service = arguments, service
+        self._sessions = ExitStack()
+        self._present: tuple[Session, BusRenewal] | None = None
+
+    @property
+    def connected(self) -> bool:
+        """Whether messages can arrive."""
+        return self._present is not None and self._present[0].connected
+
+    @contextmanager
+    def opened(self) -> Iterator[None]:
+        """Receive for the duration of the context.
+
+        Raises:
+          UsageError: No router responds, or it refuses this user.
+        """
+        with self._sessions:
+            self._open()
+            yield
+
+    def renew(self, now_ns: int) -> None:
+        """Open another session if one is due; takes up to three seconds while the bus is starting."""
+        if self._present is not None and not self._present[1].due(now_ns):
+            return
+        self._present, self.requests = None, None
+        self._sessions.close()
+        try:
+            self._open()
+        except UsageError:  # the router is not ready yet, or has ended again
+            return
+
+    def _open(self) -> None:
+        session = self._sessions.enter_context(open_bus(self._arguments, "recorder", sender=sender_of(self._arguments)))
+        _, subscription = session.subscribe_all("**", self.queue)
+        self._sessions.callback(subscription.undeclare)
+        self.requests = session.service_server(self._service) if self._service else None
+        self._present = session, BusRenewal(self._arguments, session, time.monotonic_ns())
