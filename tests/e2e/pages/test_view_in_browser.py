@@ -503,6 +503,28 @@ def test_a_live_page_keeps_up_with_ten_batches_a_second(browser: Browser) -> Non
         assert browser.errors == []
 
 
+def test_a_page_of_hours_keeps_ten_minutes_of_samples_and_every_other_event(browser: Browser) -> None:
+    """Without a limit its frames, and its stop button with them, took 4 s after three hours."""
+    broadcast, hour = EventBroadcast(), range(0, 36_000)
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        opened(browser, f"http://127.0.0.1:{port}/")
+        browser.wait("document.documentElement.dataset.connection === 'open'")
+        broadcast.publish(
+            [
+                Event(0.0, "outline truth field", {"points": []}),
+                Event(0.0, "plan", {"status": "solved", "way": "searched", "steps": []}),
+            ]
+        )
+        for first in hour[::600]:
+            broadcast.publish([Event(0.1 * k, "tick", {"tick": k, "work": 1.0}) for k in range(first, first + 600)])
+            browser.frame()
+        browser.wait(f"{AT} > {0.1 * hour[-1] - 0.2}")
+        kept = int(browser.value("document.documentElement.dataset.kept"))
+        assert 6000 <= kept <= 6000 + 600 + 10
+        assert text(browser, "#plan small").startswith("solved"), "the plan of an hour ago is in force"
+    browser.errors.clear()  # of the server that is gone
+
+
 def test_the_wheel_with_shift_zooms_the_timeline_and_a_double_click_shows_all(browser: Browser, soccer: str) -> None:
     opened(browser, soccer, 4.0)
     labels = (

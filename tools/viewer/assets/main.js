@@ -33,6 +33,7 @@ player.watch((at) => {
   sceneNow().show(at, timeline.view());
   root.dataset.at = at.toFixed(3);
   root.dataset.rows = String(run.version);
+  root.dataset.kept = String(run.kept());
 });
 
 /** Restart after a reconnection, perhaps to another server: it sends all events again, and its stop button's token. */
@@ -59,6 +60,7 @@ function listen() {
     for (const [at, , fields] of rows.filter(isBeat)) run.beat(at, fields);
     const events = rows.filter((row) => !isBeat(row));
     events.forEach((row) => run.add(row));
+    run.forget();
     if (events.length) player.grown();
     else player.refresh();
   });

@@ -2,8 +2,15 @@
 
 const SOURCES = ["truth", "believed", "seen", "odom"]; // sources of the robot's pose, best first
 
+// Of a live run: what passes is kept for as long as the viewer keeps it for new pages (broadcast.py), the rest for ever.
+const KEEP_S = 600;
+const FORGET_EVERY_S = 60;
+const PASSING = new Set(["tick", "belief", ...SOURCES, "why"]);
+const PASSING_STARTS = ["series ", "outline "];
+
 class Run {
   constructor() {
+    this.forgotAt = 0;
     this.kinds = new Map();
     this.start = 0;
     this.end = 0;
@@ -44,6 +51,22 @@ class Run {
     const now = at >= this.end ? Math.max(at, this.now) : at;
     const { at: _, ...parts } = this.last("silent", at) ?? {};
     return Object.entries(parts).map(([part, heard]) => [part, now - heard]);
+  }
+
+  /** Drop old samples of a live run: a page of hours would take seconds for a frame, and so would its stop button. */
+  forget() {
+    if (this.end < this.forgotAt + FORGET_EVERY_S) return;
+    this.forgotAt = this.end;
+    for (const [kind, rows] of this.kinds) {
+      if (!PASSING.has(kind) && !PASSING_STARTS.some((start) => kind.startsWith(start))) continue;
+      const old = this.count(kind, this.end - KEEP_S);
+      rows.splice(0, Math.min(old, rows.length - 1)); // the newest still holds, e.g. an outline
+    }
+  }
+
+  /** Number of events that are kept. */
+  kept() {
+    return [...this.kinds.values()].reduce((total, rows) => total + rows.length, 0);
   }
 
   all(kind) {

@@ -13,7 +13,8 @@ from threading import Lock
 
 from tailor.tools.viewer.timeline import Event, is_sample
 
-KEEP_S = 600.0  # of samples; all other events are kept from the start
+KEEP_S = 600.0  # of what passes; all other events are kept from the start. The page keeps as much (run.js)
+WHY = "why"  # kind of the alternatives of a decision: curves, a hundred times as large as the decision itself
 MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
 BEAT = "now"  # kind of an event that is not kept
 OUTLINE = "outline "  # starts the kinds of outlines, which a moving arm sends as often as samples; the newest is kept
@@ -112,11 +113,11 @@ class EventBroadcast:
                 self._pages.discard(page)
 
     def _forget(self, now_s: float) -> None:
-        """Drop old samples, a minute at a time."""
+        """Drop what has passed, a minute at a time."""
         if now_s < self._forgot_s + 60:
             return
         self._forgot_s, oldest = now_s, now_s - self._keep_s
-        newest = {e.kind: e for e in self._events if e.kind.startswith(OUTLINE)}
+        newest = {e.kind: e for e in self._events if e.kind == WHY or e.kind.startswith(OUTLINE)}
         self._events = [e for e in self._events if e.at_s >= oldest or not _passes(e) or e is newest.get(e.kind)]
 
 
@@ -126,4 +127,4 @@ def encoded(events: Sequence[Event]) -> str:
 
 
 def _passes(event: Event) -> bool:
-    return is_sample(event.kind) or event.kind.startswith(OUTLINE)
+    return is_sample(event.kind) or event.kind == WHY or event.kind.startswith(OUTLINE)

@@ -85,6 +85,16 @@ def test_old_ticks_are_dropped_and_old_events_are_not() -> None:
     assert kept[-1][0] == 199
 
 
+def test_old_alternatives_are_dropped_but_the_newest() -> None:
+    broadcast = EventBroadcast(keep_s=10)
+    for k in range(3):
+        broadcast.publish([Event(float(k), "subgoals", {}), Event(float(k), "why", {"k": k})])
+    broadcast.publish([tick(100.0)])
+    with broadcast.subscribe() as page:
+        kept = [(kind, fields) for _, kind, fields in json.loads(page.next(0)) if kind in ("subgoals", "why")]
+    assert kept == [("subgoals", {})] * 3 + [("why", {"k": 2})]
+
+
 def test_a_page_that_does_not_read_is_disconnected_and_blocks_no_other() -> None:
     broadcast = EventBroadcast()
     with broadcast.subscribe() as page:
