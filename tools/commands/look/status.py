@@ -73,11 +73,12 @@ def _once(arguments: argparse.Namespace, seconds: float, stop: Stop) -> Picture:
 
 def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -> Picture:
     """The state after some seconds; after `COMPLETE_S` where less left it open what is required."""
-    began_s = time.monotonic()
+    began_s, polled_ns = time.monotonic(), time.monotonic_ns()
     while not stop.requested:
         elapsed_s = time.monotonic() - began_s
         if elapsed_s >= seconds and not (elapsed_s < COMPLETE_S and model.incomplete(time.monotonic_ns())):
             break
         time.sleep(DRAIN_S)
-        watcher.poll(time.monotonic_ns())
-    return model.picture(time.monotonic_ns())
+        polled_ns = time.monotonic_ns()
+        watcher.poll(polled_ns)
+    return model.picture(polled_ns)  # not later: what arrived since has not been read, and nobody was silent

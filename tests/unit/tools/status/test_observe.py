@@ -1,0 +1,31 @@
+"""`tailor status` that prints once judges the moment up to which it has read the bus."""
+
+from __future__ import annotations
+
+import time
+from itertools import count
+
+from tailor.runtime.stopping import Stop
+from tailor.tools.commands.look import status
+
+
+class Observed:
+    """A watcher and a model that remember the moments that they are given."""
+
+    def __init__(self) -> None:
+        self.polled_ns = 0
+
+    def poll(self, now_ns: int) -> None:
+        self.polled_ns = now_ns
+
+    def incomplete(self, now_ns: int) -> bool:
+        return False
+
+    def picture(self, now_ns: int) -> int:
+        return now_ns
+
+
+def test_an_observer_that_stands_still_after_its_last_look_finds_nobody_silent(monkeypatch) -> None:
+    observed, stalls_ns = Observed(), count(0, 10**9)  # a second passes between any two looks at the clock
+    monkeypatch.setattr(time, "monotonic_ns", stalls_ns.__next__)
+    assert status._observe(observed, observed, 0.2, Stop()) == observed.polled_ns > 0
