@@ -24,6 +24,7 @@ LEVEL = 0.9
 MAX_LEAVES = 16
 MIN_LEAF = 60  # episodes in a leaf: fewer do not determine a twentieth of them
 THIRDS = 3  # of the widths, corrected separately
+MIN_PART = 100  # episodes in a third: nine tenths of fewer are known to worse than three points
 LEAST = 1e-3  # s or J, half of the narrowest interval
 
 
@@ -99,20 +100,21 @@ def _factors(width: Array, excess: Array, kinds: Numbers, leaf_width: Array) -> 
     optimiser's choices are a quarter of the episodes, and what refinement uses. Each kind has thirds of its own, as its
     widths are others: the widest choices would else be judged among random episodes that are as wide.
     """
-    groups = [np.ones(len(kinds), bool), *(kinds == kind for kind in np.unique(kinds))]
-    enough = [group for group in groups if group.sum() >= THIRDS * MIN_LEAF]
-    if not enough:
-        return np.full(len(leaf_width), conformal_quantile(excess, LEVEL))
-    needed = np.max([_by_thirds(width[group], excess[group], leaf_width) for group in enough], axis=0)
+    of_kinds = [kinds == kind for kind in np.unique(kinds)]
+    groups = [np.ones(len(kinds), bool), *(group for group in of_kinds if group.sum() >= MIN_LEAF)]
+    needed = np.max([_by_parts(width[group], excess[group], leaf_width) for group in groups], axis=0)
     return np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
 
 
-def _by_thirds(width: Array, excess: Array, leaf_width: Array) -> Array:
-    """Correction of each leaf, (l,), by the episodes whose width is in the same third; 0 beyond all of them."""
-    edges = np.quantile(width, np.arange(1, THIRDS) / THIRDS)
-    third = np.searchsorted(edges, width, "right")
+def _by_parts(width: Array, excess: Array, leaf_width: Array) -> Array:
+    """Correction of each leaf, (l,), by the episodes whose width is in the same third; 0 where all are narrower.
+
+    Few episodes are in halves, or not parted.
+    """
+    parts = max(1, min(THIRDS, len(width) // MIN_PART))
+    edges = np.quantile(width, np.arange(1, parts) / parts)
+    part = np.searchsorted(edges, width, "right")
     pooled = conformal_quantile(excess, LEVEL)
-    some = [excess[third == k] for k in range(THIRDS)]  # of equal widths a third may hold none
+    some = [excess[part == k] for k in range(parts)]  # of equal widths a part may hold none
     factors = np.array([conformal_quantile(each, LEVEL) if len(each) else pooled for each in some])
-    known = (leaf_width >= width.min()) & (leaf_width <= width.max())
-    return np.where(known, factors[np.searchsorted(edges, leaf_width, "right")], 0.0)
+    return np.where(leaf_width <= width.max(), factors[np.searchsorted(edges, leaf_width, "right")], 0.0)

@@ -1,7 +1,6 @@
 """Trains action models and tests them on held-out episodes; the published model is fitted to all episodes.
 
-Episodes are never split between training and test. n_i, the number of first ticks, is chosen by cross-validation of a
-cheap stand-in of the learner.
+Episodes are never split between training and test.
 """
 
 from __future__ import annotations
@@ -15,20 +14,19 @@ from numpy.typing import NDArray
 from sklearn.base import clone
 
 from tailor.models.episodes.episodes import Episode
-from tailor.models.episodes.examples import Examples, folds, split
+from tailor.models.episodes.examples import Examples, split
 from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
+from tailor.models.training.first_ticks import best_n_i
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
 
 TEST_SHARE = 0.25  # of the episodes (paper 5.1)
-FIRST_TICKS = (1, 2, 5, 10, 20)  # candidates for n_i
-FOLDS = 4
 CURVE = (0.125, 0.25, 0.5, 0.75)  # shares, besides all of them, of the training episodes in the learning curve
 MIN_EPISODES = 40  # fewer cannot be split four ways
 
@@ -98,7 +96,7 @@ def train_regression(
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
     singles = learners.single_learners(learners.learner_name(target.kind, learner), seed)
-    n_i = _best_n_i(target, finished, kept, space, singles, rng)
+    n_i = best_n_i(target, finished, kept, space, singles, rng)
     rows = target.examples(finished, n_i)
     first = target.examples(judging, 1).of(apart)
     held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds)
@@ -165,40 +163,6 @@ def check_count(episodes: Sequence[Episode], what: str) -> None:
     """Raise a UsageError if the episodes are too few."""
     if len(episodes) < MIN_EPISODES:
         raise UsageError(f"{len(episodes)} {what} episodes, expected at least {MIN_EPISODES}".replace("  ", " "))
-
-
-def _best_n_i(
-    target: RegressionTarget,
-    episodes: Sequence[Episode],
-    kept: NDArray[np.int64],
-    space: FeatureSpace,
-    singles: Sequence[Any],
-    rng: np.random.Generator,
-) -> int:
-    """Number of first ticks with which one of `singles` has the least error on whole durations, cross-validated.
-
-    A tree gains by the many rows of many ticks where a network does not, so the learner that ships decides.
-    """
-    first = target.examples(episodes, 1)
-    parts = folds(kept, FOLDS, rng)
-    error = []
-    for n_i in FIRST_TICKS:
-        rows = target.examples(episodes, n_i)
-        error.append(min(_cross_validated_mae(single, rows, first, kept, parts, space) for single in singles))
-    return FIRST_TICKS[int(np.argmin(error))]
-
-
-def _cross_validated_mae(
-    learner: Any,
-    rows: Examples,
-    first: Examples,
-    kept: NDArray[np.int64],
-    parts: Sequence[NDArray[np.int64]],
-    space: FeatureSpace,
-) -> float:
-    """Mean error on the `first` rows of each part of a copy of `learner` fitted to the `rows` of the other parts."""
-    fitted = (_fitted(clone(learner), rows.of(np.setdiff1d(kept, part)), space) for part in parts)
-    return float(np.mean([_mae(each, first.of(part), space) for each, part in zip(fitted, parts, strict=True)]))
 
 
 def _mae(learner: Any, rows: Examples, space: FeatureSpace) -> float:

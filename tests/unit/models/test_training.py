@@ -11,7 +11,8 @@ from tailor.models.episodes.regression_targets import DURATION, ENERGY
 from tailor.models.export.publishing import Publication, publish
 from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.planar import projective
-from tailor.models.training import learners, training
+from tailor.models.training import first_ticks, learners
+from tailor.models.training.first_ticks import best_n_i
 from tailor.models.training.success_training import train_success
 from tailor.models.training.training import Trained, train_duration, train_duration_beside, train_regression
 from tailor.schemas.errors import UsageError
@@ -53,11 +54,16 @@ def duration(data: DataSet) -> Trained:
 def test_first_ticks_are_chosen_by_the_learner_that_ships(data, monkeypatch) -> None:
     """One network stands for several, a tree for a bag, both for their stack."""
     tried = []
-    monkeypatch.setattr(training, "_cross_validated_mae", lambda single, *_: tried.append(single) or float(len(tried)))
+
+    def noted(single, *_):
+        tried.append(single)
+        return np.full(40, float(len(tried)))
+
+    monkeypatch.setattr(first_ticks, "_cross_validated_errors", noted)
     for learner in ("network", "bag", "best"):
         space, rng = projective, np.random.default_rng(0)
         singles = learners.single_learners(learner, 3)
-        assert training._best_n_i(DURATION, data.episodes, np.arange(40), space, singles, rng) == 1
+        assert best_n_i(DURATION, data.episodes, np.arange(40), space, singles, rng) == 1
     kinds = [type(single).__name__ for single in tried]
     assert kinds[:10] == ["NetworkRegressor"] * 5 + ["ModelTreeRegressor"] * 5
     assert kinds[10:] == ["ModelTreeRegressor", "NetworkRegressor"] * 5
@@ -66,9 +72,19 @@ def test_first_ticks_are_chosen_by_the_learner_that_ships(data, monkeypatch) -> 
 
 def test_the_least_error_of_any_member_decides_how_many_first_ticks(data, monkeypatch) -> None:
     errors = iter([3.0, 5.0, 3.0, 5.0, 9.0, 2.0, 3.0, 3.0, 4.0, 4.0])
-    monkeypatch.setattr(training, "_cross_validated_mae", lambda *_: next(errors))
+    monkeypatch.setattr(first_ticks, "_cross_validated_errors", lambda *_: np.full(40, next(errors)))
     singles, rng = learners.single_learners("best", 3), np.random.default_rng(0)
-    assert training._best_n_i(DURATION, data.episodes, np.arange(40), projective, singles, rng) == 5
+    assert best_n_i(DURATION, data.episodes, np.arange(40), projective, singles, rng) == 5
+
+
+@pytest.mark.parametrize(("gain", "expected"), [(0.05, 1), (0.5, 2)])
+def test_more_first_ticks_must_be_clearly_better(data, monkeypatch, gain, expected) -> None:
+    """Errors of 100 episodes differ by 1 from choice to choice, so that a gain of 0.2 is two standard errors."""
+    luck = np.random.default_rng(1).permutation(np.repeat([-1.0, 1.0], 50))
+    errors = iter([np.full(100, 5.0), 5.0 - gain + luck, *[np.full(100, 9.0)] * 3])
+    monkeypatch.setattr(first_ticks, "_cross_validated_errors", lambda *_: next(errors))
+    singles, rng = learners.single_learners("network", 3), np.random.default_rng(0)
+    assert best_n_i(DURATION, data.episodes, np.arange(40), projective, singles, rng) == expected
 
 
 def test_a_published_duration_model_predicts_what_its_learner_does(data, duration, tmp_path) -> None:
@@ -91,10 +107,10 @@ def test_training_twice_gives_the_same_bits(data, duration) -> None:
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
 
 
-def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_is_that_of_all(data, tmp_path) -> None:
-    late_s = {0: 1.5, 4: -1.5}  # of a quarter of the episodes, by their number
+def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_is_that_of_all(tmp_path) -> None:
+    data, late_s = data_set(960), {0: 1.5, 16: -1.5}  # of a sixteenth of the episodes, by their number
     episodes = [
-        replace(e, in_context=e.number % 4 == 0, duration_s=e.duration_s + 5 + late_s.get(e.number % 8, 0.0))
+        replace(e, in_context=e.number % 16 == 0, duration_s=e.duration_s + 5 + late_s.get(e.number % 32, 0.0))
         for e in data.episodes
     ]
     alone, beside = (train(episodes, projective, "linear", 3) for train in (train_duration, train_duration_beside))
