@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from tailor.executive.core import deliberation_cycle
+from tailor.executive.core import adoption
 from tailor.executive.core.course import HALT_NS
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
@@ -168,7 +168,7 @@ def test_robot_drives_on_without_its_subgoal_once_the_object_is_gone():
 
 @pytest.mark.parametrize("too_fast", [False, True])
 def test_robot_that_is_too_fast_for_its_models_brakes_before_it_drives_around_an_object(monkeypatch, too_fast):
-    monkeypatch.setattr(deliberation_cycle, "begins_too_fast", lambda sequence: too_fast)
+    monkeypatch.setattr(adoption, "begins_too_fast", lambda sequence: too_fast)
     ticks = run([(0, 0.0)] * 5 + [(1, 40.0)] * 3, WaryLine(), ShortRunUp())
     (at, ended), *_ = published(ticks, ActionFinished)
     commands = dict(published(ticks, VelocityCommand))
