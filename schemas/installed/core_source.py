@@ -11,7 +11,7 @@ from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.source import ROOT
 
 SHOWN_DIGITS = 12
-STARTS = ("executive", "models/features", "models/runtime.py", "models/inference.py", "schemas")
+STARTS = ("executive", "models/features", "models/runtime.py", "models/inference.py", "robots", "schemas")
 NOT_RUN = ("executive/domains", "schemas/installed", "schemas/ros2")  # of all domains only this robot's is
 SUFFIXES = (".py", ".pddl", ".toml")
 
@@ -33,9 +33,8 @@ def core_source(domain: str) -> dict[str, str]:
 
 def _files(domain: str) -> Iterator[tuple[str, str, Path]]:
     """Folder, name and path of each file; of all domains only that of this robot."""
-    found = find_spec(spec_of(domain).domain.partition(":")[0])
-    if found is not None and found.origin:
-        own = Path(found.origin).resolve().parent
+    own = _own(spec_of(domain).domain.partition(":")[0])
+    if own is not None:
         shown = own.relative_to(ROOT).as_posix() if own.is_relative_to(ROOT) else own.name
         yield from ((shown, path.relative_to(own).as_posix(), path) for path in _sources(own))
     for start in STARTS:
@@ -45,8 +44,17 @@ def _files(domain: str) -> Iterator[tuple[str, str, Path]]:
                 yield start if path.parent == ROOT / start else "/".join(name.split("/")[:2]), name, path
 
 
+def _own(module: str) -> Path | None:
+    """Folder of a domain's module. A module of no package is a file alone: beside it lies what others installed."""
+    found = find_spec(module)
+    if found is None or not found.origin:
+        return None
+    path = Path(found.origin).resolve()
+    return path.parent if found.parent else path
+
+
 def _sources(start: Path) -> Iterator[Path]:
     if start.is_file():
         yield start
     for suffix in SUFFIXES:
-        yield from start.rglob(f"*{suffix}")
+        yield from filter(Path.is_file, start.rglob(f"*{suffix}"))  # editors leave links that lead nowhere

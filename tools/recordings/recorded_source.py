@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tailor import __version__
+from tailor.tools.cli.plain_text import plain
 
 UNSTATED = "which source recorded it is unknown: recordings of before 2026-11-26, and golden ones, do not state it"
 
@@ -27,4 +28,10 @@ def source_contrast(recorded: Any, today: dict[str, str]) -> str:
     other = [name for name in sorted({*folders, *today}, key=str) if folders.get(name) != today.get(name)]
     if not other:
         return "recorded by this very source: equal inputs gave other outputs, which is a fault"
-    return f"recorded by tailor {recorded.get('version')!s:.20} with another {', '.join(map(str, other))[:200]}"
+    version, folders_shown = str(recorded.get("version")), ", ".join(map(str, other))
+    return f"recorded by tailor {_short(version, 20)} with another {_short(folders_shown, 200)}"
+
+
+def _short(text: str, most: int) -> str:
+    """At most so many characters of a text from a file, for a terminal."""
+    return plain(text[:most])[:most]

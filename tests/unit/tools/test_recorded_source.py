@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from types import SimpleNamespace
 
 import pytest
 
@@ -42,6 +43,12 @@ def test_a_hostile_source_gives_one_short_line():
     assert len(told) < 300
 
 
+def test_a_hostile_source_controls_no_terminal():
+    hostile = "x\nequal: 1 messages\x1b[2J"
+    told = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY)
+    assert told.isprintable()
+
+
 @pytest.fixture
 def copy(tmp_path, monkeypatch):
     """A copy of what is hashed, in which files may be changed."""
@@ -59,10 +66,28 @@ def test_a_changed_file_changes_its_folder_and_no_other(copy, file):
     assert [name for name in before if before[name] != after[name]] == ["/".join(file.split("/")[:2])]
 
 
+def test_what_an_editor_leaves_beside_a_file_hinders_no_start(copy):
+    before = core_source("soccer")
+    (copy / "executive" / "core" / ".#modes.py").symlink_to("somebody@elsewhere")
+    assert core_source("soccer") == before
+
+
+def test_of_a_domain_in_a_module_alone_only_that_module_counts(tmp_path, monkeypatch):
+    (tmp_path / "lonely.py").write_text("DOMAIN = 1")
+    (tmp_path / "neighbour.py").write_text("x = 1")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(module, "spec_of", lambda name: SimpleNamespace(domain="lonely:DOMAIN"))
+    first = core_source("lonely")
+    (tmp_path / "neighbour.py").write_text("x = 2")
+    assert core_source("lonely") == first
+    (tmp_path / "lonely.py").write_text("DOMAIN = 2")
+    assert {name for name, hash in core_source("lonely").items() if hash != first[name]} == {"lonely.py"}
+
+
 def test_a_robot_has_the_source_of_its_own_domain_and_of_no_other():
     soccer, kitchen = core_source("soccer"), core_source("kitchen")
     assert {name: hash for name, hash in soccer.items() if "domains" not in name} == {
         name: hash for name, hash in kitchen.items() if "domains" not in name
     }
     assert [name for name in soccer if "domains" in name] == ["executive/domains/soccer"]
-    assert {"executive", "executive/core", "executive/refinement", "schemas/messages"} < soccer.keys()
+    assert {"executive", "executive/core", "executive/refinement", "robots", "schemas/messages"} < soccer.keys()
