@@ -10,7 +10,7 @@ import gc
 import os
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -87,19 +87,15 @@ def inherited_fifo(priority: int = BUS_PRIORITY) -> Iterator[None]:
     """Schedule under SCHED_FIFO whatever threads the calling thread starts meanwhile; a refusal changes nothing.
 
     `elevate_bus_threads` knows a thread by the name that it gives itself. On a busy machine a thread may not have run
-    yet when it looks: such a one would stay under ordinary scheduling. This thread itself is scheduled as before again
-    at the end.
+    yet when it looks: such a one would stay under ordinary scheduling. At the end this thread itself is scheduled as
+    before.
     """
-    try:
-        before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
-    except OSError:
+    with ExitStack() as restored:
+        with suppress(OSError):
+            before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+            restored.callback(os.sched_setscheduler, 0, before, parameters)
         yield
-        return
-    try:
-        yield
-    finally:
-        os.sched_setscheduler(0, before, parameters)
 
 
 def take_fifo(priority: int) -> str:

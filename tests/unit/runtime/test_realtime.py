@@ -9,7 +9,8 @@ import weakref
 import pytest
 
 from tailor.runtime.gc_freeze import gc_disabled, gc_frozen
-from tailor.runtime.realtime import MAX_OLD_OBJECTS, OLD_TICKS, collect_garbage
+from tailor.runtime.realtime import MAX_OLD_OBJECTS, OLD_TICKS, collect_garbage, inherited_fifo
+from tailor.schemas.errors import UsageError
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import PATIENCE_S
 
@@ -99,6 +100,23 @@ def test_a_routers_threads_are_not_starved_by_ordinary_work(router, seen):
     if allowed.returncode:
         pytest.skip("SCHED_FIFO is not granted here")
     assert set(found["policies"]) == {os.SCHED_FIFO}
+
+
+@pytest.mark.parametrize("granted", [True, False])
+def test_an_error_meanwhile_leaves_the_scheduling_as_before_and_names_no_refusal(monkeypatch, granted):
+    requests = []
+
+    def request(thread, policy, parameters):
+        requests.append((policy, parameters.sched_priority))
+        if not granted:
+            raise PermissionError
+
+    monkeypatch.setattr(os, "sched_setscheduler", request)
+    before = os.sched_getscheduler(0), os.sched_getparam(0).sched_priority
+    with pytest.raises(UsageError) as raised, inherited_fifo(7):
+        raise UsageError("the port is in use")
+    assert requests == [(os.SCHED_FIFO, 7), before][: 1 + granted]
+    assert raised.value.__context__ is None
 
 
 class Cycle:
