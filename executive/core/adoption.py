@@ -15,7 +15,10 @@ from tailor.executive.refinement.rolling_start import begins_too_fast
 
 
 def adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:
-    """The state with a decision: at once between actions, otherwise only if it is worth a change."""
+    """The state with a decision: at once between actions, otherwise only if it is worth a change.
+
+    A robot that is too fast for a decision which begins with an asserted subgoal brakes instead, and decides at rest.
+    """
     task = state.task
     new_plan = task.plan is not decision.plan
     if task.running is None:

@@ -30,7 +30,10 @@ def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tupl
 
 
 def halted(context: Context, state: State) -> State:
-    """End an action that objects have made likely to fail. The robot brakes first, and decides at rest."""
+    """End an action that objects have made likely to fail, or that is too fast for a new way around them.
+
+    The robot brakes first, and decides at rest.
+    """
     task, until_ns = after_action(state.task), state.now_ns + HALT_NS
     return replace(state, task=task, deliberation=None, coasted=context.settings.coast_ticks, halted_until_ns=until_ns)
 

@@ -45,8 +45,7 @@ class FeasibilityCheck:
         self._best: list[tuple[float, dict[int, float]]] = []  # failure and values by variable id, least failure first
         self._objective = SequenceObjective(actions, sequence.variables, models, settings, arrival_ids)
         complete = [start for start in sequence.starts if start.keys() >= set(self._objective.ids)]
-        # candidates of an earlier search
-        self._known = self._objective.vectors(complete if self._objective.ids else ())
+        self._known = self._objective.vectors(complete if self._objective.ids else ())  # not yet evaluated here
         self._rng = rng
         self._remaining = settings.assertion_samples if self._objective.ids else 1
 
@@ -73,7 +72,6 @@ class FeasibilityCheck:
         failures = self._failures(self._known)
         within = failures <= self._limit
         self._keep(self._known[within], failures[within], len(failures))
-        # candidates of an earlier search
         self._known = self._known[:0]
 
     def _draw(self, count: int) -> None:
