@@ -57,6 +57,15 @@ def test_a_clause_finds_wrong_outlets(clause, base, gripper, fault, subject):
     assert any(fault in each for each in found(subject, clause)), found(subject, clause)
 
 
+def test_kept_set_points_that_are_not_one_for_each_axis_are_found(subject):
+    axes = len(subject.domain.axes)
+    subject.domain.kept = lambda belief: (0.0,) * axes
+    assert found(subject, "holds_together") == []
+    subject.domain.kept = lambda belief: (0.0,)
+    fault = f"kept: 1 set-points, expected one for each of {axes} axes"
+    assert any(fault in each for each in found(subject, "holds_together"))
+
+
 def test_a_kept_set_point_out_of_range_is_found(subject):
     rail, width = subject.domain.axes
     wide = dataclasses.replace(width, kept=0.5)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.domain import Domain, kept_at
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of
@@ -60,6 +60,9 @@ def _faults_of_topics(domain: Domain) -> Iterator[str]:
     axes = tuple(axis for outlet in outlets_of(domain) for axis in outlet.axes)
     if axes != domain.axes:
         yield "axes are not those of all outlets, in their order"
+    kept = kept_at(domain, domain.initial_belief())
+    if kept and len(kept) != len(domain.axes):
+        yield f"kept: {len(kept)} set-points, expected one for each of {len(domain.axes)} axes"
     yield from (f"required: '{name}' is none of sensors" for name in domain.required if name not in domain.sensors)
 
 
