@@ -72,6 +72,13 @@ def test_costs_are_compared_with_those_of_learned_greedy_over_letters():
     assert "energy_j" not in rows["stopping"]  # not known there
 
 
+def test_letters_that_are_faster_and_take_less_energy_are_the_fastest():
+    row = {"mode": "refined", "ci95": (1.0, 3.0), "against_stopping_ci95": (2.0, 4.0), "energy_j_more_ci95": (-2.0, -1.0)}
+    assert letters.is_fastest(row)
+    assert not letters.is_fastest({**row, "against_stopping_ci95": (-0.1, 4.0)})
+    assert not letters.is_fastest({**row, "ci95": (-0.1, 4.0)})
+
+
 def test_more_seeds_of_equal_letters_make_no_interval_narrower():
     few, many = (next(row for row in letters.rows_of(found(n_seeds=n)) if row["mode"] == "refined") for n in (1, 10))
     assert np.ptp(many["ci95"]) == pytest.approx(np.ptp(few["ci95"]))
