@@ -80,14 +80,8 @@ def verify(
     )
     with gc_frozen():  # as live
         began_s = time.perf_counter()
-        difference, ends = None, ""
-        try:
-            used = context if proofs else without_proofs(context)
-            difference = _first_difference(comparison, runs, run, used, writer)
-        except UsageError as error:
-            if not partly or not comparison.ticks:
-                raise
-            ends = str(error)
+        used = context if proofs else without_proofs(context)
+        difference, ends = _compared(comparison, runs, run, used, writer, partly)
         took_s = time.perf_counter() - began_s
     return Verdict(
         run.sender,
@@ -101,6 +95,23 @@ def verify(
         ends,
         source_contrast(run.provenance.get("source"), core_source(context.domain.name)) if difference else "",
     )
+
+
+def _compared(
+    comparison: RunComparison,
+    runs: RecordedRuns,
+    run: RecordedRun,
+    context: Context,
+    writer: TickWriter | None,
+    partly: bool,
+) -> tuple[Difference | None, str]:
+    """The first difference, and why the comparison ends before the run does; empty if it does not."""
+    try:
+        return _first_difference(comparison, runs, run, context, writer), ""
+    except UsageError as error:
+        if not partly or not comparison.ticks:
+            raise
+        return None, str(error)
 
 
 def _first_difference(
