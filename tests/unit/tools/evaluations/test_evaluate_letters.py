@@ -73,7 +73,7 @@ def test_costs_are_compared_with_those_of_learned_greedy_over_letters():
 
 
 def test_letters_that_are_faster_and_take_less_energy_are_the_fastest():
-    row = {"mode": "refined", "ci95": (1.0, 3.0), "against_stopping_ci95": (2.0, 4.0), "energy_j_more_ci95": (-2.0, -1.0)}
+    row = {"ci95": (1.0, 3.0), "against_stopping_ci95": (2.0, 4.0), "energy_j_more_ci95": (-2.0, -1.0)}
     assert letters.is_fastest(row)
     assert not letters.is_fastest({**row, "against_stopping_ci95": (-0.1, 4.0)})
     assert not letters.is_fastest({**row, "ci95": (-0.1, 4.0)})
