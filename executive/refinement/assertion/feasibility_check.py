@@ -19,7 +19,8 @@ START_MARGIN = 0.05  # above the least failure probability
 class FeasibilityCheck:
     """Samples one action of a sequence; `best_failure` is the least probability of failure so far.
 
-    The limit is the risk accepted for the action, or else the settings' `p_fail_max`.
+    The limit is the risk accepted for the action, or else the settings' `p_fail_max`. Starts of the sequence that give
+    all free parameters are judged before any sample is drawn.
 
     Args:
       sequence: The instantiated actions.

@@ -20,7 +20,7 @@ from tailor.executive.refinement.solvers.solver import Solver
 
 
 class SubgoalComparison:
-    """Short search on both sequences, one after the other; resumable.
+    """Short search on both sequences, one after the other, among objects after a wide one for subgoals; resumable.
 
     Args:
       direct: The sequence without the subgoal.

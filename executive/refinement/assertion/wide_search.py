@@ -17,7 +17,7 @@ from tailor.executive.refinement.solvers.solver import Limits
 # With the next search they leave 0.08 s on training starts, half as many 0.15 s; 1024 draws instead left 0.35 s
 GENERATIONS = 80
 CROWD = Crowd(64, 0.2)
-N_BEST = 12  # half of the individuals that the next search begins with: the others are drawn anew
+N_BEST = 12  # half of the next search's smallest population; the others are starts of the sequence, or drawn anew
 
 
 class WideSearch:

@@ -35,7 +35,7 @@ class DifferentialEvolution(Solver):
       rng: The only source of randomness.
       seeds: Initial candidates, shape (s, d).
       limits: End of the search, in generations.
-      crowd: Population; it is larger for more than four parameters.
+      crowd: Population; it has at least five individuals a parameter.
     """
 
     def __init__(
