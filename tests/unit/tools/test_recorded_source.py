@@ -34,19 +34,19 @@ def test_a_difference_under_the_same_source_is_a_fault():
     ],
 )
 def test_the_folders_that_differ_are_named(folders, named):
-    told = source_contrast({"version": "0.0.9", "folders": folders}, TODAY)
-    assert told == f"recorded by tailor 0.0.9 with {named}"
+    text = source_contrast({"version": "0.0.9", "folders": folders}, TODAY)
+    assert text == f"recorded by tailor 0.0.9 with {named}"
 
 
 def test_a_hostile_source_gives_one_short_line():
-    told = source_contrast({"version": "1" * 10**6, "folders": {"x" * 10**6: 1, 5: None}}, TODAY)
-    assert len(told) < 300
+    text = source_contrast({"version": "1" * 10**6, "folders": {"x" * 10**6: 1, 5: None}}, TODAY)
+    assert len(text) < 300
 
 
 def test_a_hostile_source_controls_no_terminal():
     hostile = "x\nequal: 1 messages\x1b[2J"
-    told = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY)
-    assert told.isprintable()
+    text = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY)
+    assert text.isprintable()
 
 
 @pytest.fixture

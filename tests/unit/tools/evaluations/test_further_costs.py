@@ -104,8 +104,8 @@ def test_a_row_without_an_interval_is_judged_by_its_costs_alone():
     assert not is_better(columns(outcomes("one", faster=-0.1)))
 
 
-@pytest.mark.parametrize(("scenarios", "told"), [(["aligned", "approach"], True), (["approach"], False)])
-def test_the_report_tells_why_and_the_exit_code_follows_the_rows_of_the_scenarios(monkeypatch, capsys, scenarios, told):
+@pytest.mark.parametrize(("scenarios", "remarked"), [(["aligned", "approach"], True), (["approach"], False)])
+def test_the_report_states_why_and_the_exit_code_follows_rows_of_scenarios(monkeypatch, capsys, scenarios, remarked):
     def rows_of(domain, names, seeds, arguments):
         rows = [{"scenario": name, "horizon": 2, **columns(outcomes(name))} for name in names]
         together = (
@@ -116,4 +116,4 @@ def test_the_report_tells_why_and_the_exit_code_follows_the_rows_of_the_scenario
     monkeypatch.setattr(refinement, "rows_of", rows_of)
     command = ["evaluate", "refinement", "--domain", "soccer", "--episodes", "20", "--scenario", *scenarios]
     assert main(command) == 0
-    assert ("fewer than 3 units" in capsys.readouterr().out) is told
+    assert ("fewer than 3 units" in capsys.readouterr().out) is remarked
