@@ -1,7 +1,7 @@
 """reach: move joints to a waypoint and pass it with given velocities. Knows no letters, and counts no joints.
 
-Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, then of each joint at the goal. What follows
-is for the models.
+Arguments come as the paper's Table 6 has them: (θ, θ̇) of each joint now, then of each joint at the goal. Models
+read further ones, such as friction.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from tailor.schemas.packages.spec import DomainSpec
 ROOT = Path(__file__).resolve().parents[2]
 DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, scenes
 CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_*.py")
-REASONING = ("executive/core/*", "executive/interfaces/*", "executive/planning/**/*", "executive/refinement/**/*")
+REASONING = tuple(f"executive/{room}/**/*" for room in ("core", "deliberation", "interfaces", "planning", "refinement"))
 WHOLE = (
     *CONTROL,
     *REASONING,

@@ -50,6 +50,8 @@ def altered(monkeypatch):
         ("simnodes/agilo/body.py", episodes_sha256, "arm", False),
         ("executive/refinement/refinement.py", episodes_sha256, "arm", False),
         ("executive/refinement/refinement.py", runs_sha256, "arm", True),
+        ("executive/core/sensing/freshness.py", runs_sha256, "arm", True),
+        ("executive/deliberation/plan_source.py", runs_sha256, "arm", True),
         ("simnodes/powercube/driver.toml", runs_sha256, "arm", True),
         ("models/features/drive_clearance/way.py", runs_sha256, "kitchen", True),
         ("models/features/drive_clearance/way.py", hash_of_learning, "kitchen", True),
