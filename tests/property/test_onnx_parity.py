@@ -149,11 +149,11 @@ def test_every_feature_space_gives_the_same_bits_in_the_graph(name, examples) ->
 
 
 def test_joint_space_exports_too() -> None:
-    assert session(export_duration(_fitted(joints), joints, {})).get_inputs()[0].shape[1] == 8
+    assert session(export_duration(_fitted(joints), joints, {})).get_inputs()[0].shape[1] == 10
 
 
 def _fitted(space):
-    rows = awkward(500)
+    rows = np.hstack([awkward(500), np.ones((500, 2))])[:, : len(space.arguments)]
     return ModelTreeRegressor().fit(space(rows), rows.sum(axis=1))
 
 

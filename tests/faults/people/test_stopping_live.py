@@ -167,7 +167,7 @@ def test_the_button_of_the_live_page_stops_the_robot(robot, tmp_path, tries, mea
         def press():
             request = urllib.request.Request(f"{address}stop", b"", headers, method="POST")
             with urllib.request.urlopen(request, timeout=PATIENCE_S) as response:
-                assert json.load(response) == {"confirmed": True, "drivers": {"agilo": "estopped"}}
+                assert json.load(response) == {"confirmed": True, "drivers": {"agilo": "estopped"}, "connected": True}
 
         for _ in range(tries):
             time.sleep(phases.uniform(0.0, 0.1))
