@@ -91,4 +91,5 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "joints": _joints,
     "joints-relative": _joints_relative,
     "joints-lifted": joints_lifted,
+    "joints-lifted-only": joints_lifted,
 }

@@ -17,6 +17,7 @@ from tailor.models.features.features import (
 )
 
 JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s fa:1 fb:1")
+WITHOUT_FRICTION = JOINTS[:8]
 
 
 def _joints(rows: Rows, ops: Operations) -> Rows:
@@ -44,7 +45,11 @@ def _joints_lifted(rows: Rows, ops: Operations) -> Rows:
     along_g, across_g = ca * vag + cb * vbg, ca * vbg - cb * vag
     # a mirrored pan is the same motion: the sign of what is across changes with it
     mirrored = tuple(ops.where(da < 0.0, row * -1.0, row) for row in (across, across_g))
-    return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1], rows[[8, 9]])
+    return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1])
+
+
+def _joints_lifted_with_friction(rows: Rows, ops: Operations) -> Rows:
+    return ops.stack(_joints_lifted(rows, ops), rows[[8, 9]])
 
 
 joints = FeatureSpace("joints", JOINTS, quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints)
@@ -58,6 +63,9 @@ joints_lifted = FeatureSpace(  # for what depends on gravity at the lift: invari
     "joints-lifted",
     JOINTS,
     quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s fa:1 fb:1"),
-    _joints_lifted,
+    _joints_lifted_with_friction,
 )
-SPACES = (joints_lifted, joints, joints_relative)  # the first is the default
+joints_lifted_only = FeatureSpace(  # for an arm that does not observe its friction
+    "joints-lifted-only", WITHOUT_FRICTION, joints_lifted.features[:8], _joints_lifted
+)
+SPACES = (joints_lifted, joints, joints_relative, joints_lifted_only)  # the first is the default

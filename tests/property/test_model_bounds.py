@@ -33,6 +33,7 @@ spaces = st.sampled_from(
         "projective-periodic",
         "joints",
         "joints-lifted",
+        "joints-lifted-only",
         "one-obstacle",
         "spot",
         "spot-out",
