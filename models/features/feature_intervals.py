@@ -15,6 +15,8 @@ from tailor.models.features.obstacle_intervals import one_obstacle
 from tailor.models.features.sight_intervals import Case, Spans, may_lie_in_half, sight, wrapped
 from tailor.models.features.spot_intervals import spot, spot_handle, spot_out
 
+FeatureSpans = Callable[[Spans], tuple[Case, ...]]
+
 AT_REST = 1e-7  # well below SAME_PLACE of features.py
 
 
@@ -55,7 +57,7 @@ def _projective_periodic(columns: Spans) -> tuple[Case, ...]:
 
 
 def _joints(columns: Spans) -> tuple[Case, ...]:
-    a, wa, b, wb, ag, wag, bg, wbg, *_ = columns
+    a, wa, b, wb, ag, wag, bg, wbg = columns
     da, db = ag - a, bg - b
     line = sight(a, b, ag, bg)
     known = length(wa, wb), length(wag, wbg), length(da, db)
@@ -65,7 +67,7 @@ def _joints(columns: Spans) -> tuple[Case, ...]:
 
 
 def _joints_relative(columns: Spans) -> tuple[Case, ...]:
-    a, wa, b, wb, ag, wag, bg, wbg, *_ = columns
+    a, wa, b, wb, ag, wag, bg, wbg = columns
     da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
     return (Case((a, b, da, db, wa, wb, wag, wbg)),)
 
@@ -78,7 +80,12 @@ def _heading(wa: Span, wb: Span, line: Span) -> Span:
     return Span(np.where(rests, line.lower, moving.lower), np.where(rests, line.upper, moving.upper))
 
 
-FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
+def _with_friction(spans: FeatureSpans) -> FeatureSpans:
+    """Intervals of a space of joints that has friction as two more arguments and features."""
+    return lambda columns: tuple(Case((*case.features, *columns[8:]), case.possible) for case in spans(columns[:8]))
+
+
+FEATURE_SPANS: Mapping[str, FeatureSpans] = {
     "direct": _direct,
     "relative": _relative,
     "projective": _projective,
@@ -91,5 +98,7 @@ FEATURE_SPANS: Mapping[str, Callable[[Spans], tuple[Case, ...]]] = {
     "joints": _joints,
     "joints-relative": _joints_relative,
     "joints-lifted": joints_lifted,
-    "joints-lifted-only": joints_lifted,
+    "joints-friction": _with_friction(_joints),
+    "joints-relative-friction": _with_friction(_joints_relative),
+    "joints-lifted-friction": _with_friction(joints_lifted),
 }

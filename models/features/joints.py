@@ -1,6 +1,6 @@
 """Feature spaces of two joints (Table 7): from angles and velocities to angles and velocities.
 
-Friction of the gears, a multiple of the nominal, goes only into the space that the arm's own models use.
+Each also exists for arms that observe the friction of their gears, as multiples of the nominal.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tailor.models.features.features import (
     wrap,
 )
 
-JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s fa:1 fb:1")
-WITHOUT_FRICTION = JOINTS[:8]
+JOINTS = quantities("a:rad wa:rad/s b:rad wb:rad/s ag:rad wag:rad/s bg:rad wbg:rad/s")
+FRICTION = quantities("fa:1 fb:1")
 
 
 def _joints(rows: Rows, ops: Operations) -> Rows:
@@ -48,8 +48,13 @@ def _joints_lifted(rows: Rows, ops: Operations) -> Rows:
     return ops.stack(b, ops.absolute(da), db, dist, along, mirrored[0], along_g, mirrored[1])
 
 
-def _joints_lifted_with_friction(rows: Rows, ops: Operations) -> Rows:
-    return ops.stack(_joints_lifted(rows, ops), rows[[8, 9]])
+def _with_friction(space: FeatureSpace) -> FeatureSpace:
+    """The same space with friction as two more arguments, which are features as they are."""
+
+    def rows(arguments: Rows, ops: Operations) -> Rows:
+        return ops.stack(space.rows(arguments, ops), arguments[[8, 9]])
+
+    return FeatureSpace(f"{space.name}-friction", space.arguments + FRICTION, space.features + FRICTION, rows)
 
 
 joints = FeatureSpace("joints", JOINTS, quantities("v:rad/s v_g:rad/s dist:rad angle_1:rad angle_2:rad"), _joints)
@@ -62,10 +67,11 @@ joints_relative = FeatureSpace(  # for quantities that depend on the joint posit
 joints_lifted = FeatureSpace(  # for what depends on gravity at the lift: invariant to turning and mirroring the pan
     "joints-lifted",
     JOINTS,
-    quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s fa:1 fb:1"),
-    _joints_lifted_with_friction,
+    quantities("b:rad da:rad db:rad dist:rad along:rad/s across:rad/s along_g:rad/s across_g:rad/s"),
+    _joints_lifted,
 )
-joints_lifted_only = FeatureSpace(  # for an arm that does not observe its friction
-    "joints-lifted-only", WITHOUT_FRICTION, joints_lifted.features[:8], _joints_lifted
+joints_friction = _with_friction(joints)
+SPACES = (  # the first that takes an arm's arguments is the default
+    *(joints_lifted, joints, joints_relative),
+    *(_with_friction(joints_lifted), joints_friction, _with_friction(joints_relative)),
 )
-SPACES = (joints_lifted, joints, joints_relative, joints_lifted_only)  # the first is the default

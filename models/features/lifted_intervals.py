@@ -13,7 +13,7 @@ SHORTENED = 1e-3  # a direction is shorter than 1 by less, beyond NEAR
 
 def joints_lifted(columns: Spans) -> tuple[Case, ...]:
     """Ranges of the features for boxes of joint states."""
-    a, wa, b, wb, ag, wag, bg, wbg, *friction = columns
+    a, wa, b, wb, ag, wag, bg, wbg = columns
     da, db = (ag - a).wider(ARGUMENT_ERROR), (bg - b).wider(ARGUMENT_ERROR)
     way, line = length(da, db), sight(a, b, ag, bg)
     ca, cb = _cosines(line), _cosines(Span(line.lower - TURN / 4, line.upper - TURN / 4))
@@ -22,7 +22,7 @@ def joints_lifted(columns: Spans) -> tuple[Case, ...]:
     features = [b, magnitude(da), db, way]
     for va, vb in ((wa, wb), (wag, wbg)):
         features += [_sum(_product(ca, va), _product(cb, vb)), _mirrored(_product(ca, vb) - _product(cb, va), da)]
-    return (Case((*features, *friction)),)
+    return (Case(tuple(features)),)
 
 
 def _mirrored(across: Span, da: Span) -> Span:

@@ -33,7 +33,10 @@ spaces = st.sampled_from(
         "projective-periodic",
         "joints",
         "joints-lifted",
-        "joints-lifted-only",
+        "joints-relative",
+        "joints-friction",
+        "joints-relative-friction",
+        "joints-lifted-friction",
         "one-obstacle",
         "spot",
         "spot-out",
@@ -86,7 +89,7 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
 @given(
     st.sampled_from(
         [
-            *["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted"],
+            *["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted-friction"],
             *["one-obstacle", "spot-handle"],
         ]
     ),

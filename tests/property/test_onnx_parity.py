@@ -149,7 +149,7 @@ def test_every_feature_space_gives_the_same_bits_in_the_graph(name, examples) ->
 
 
 def test_joint_space_exports_too() -> None:
-    assert session(export_duration(_fitted(joints), joints, {})).get_inputs()[0].shape[1] == 10
+    assert session(export_duration(_fitted(joints), joints, {})).get_inputs()[0].shape[1] == 8
 
 
 def _fitted(space):

@@ -26,7 +26,7 @@ RANGES = {  # where the features of the spaces lie, for thresholds to fall withi
     ],
     "spot-handle": [(0, 3), (0, np.pi), (0, 1), (-1, 1), (-0.5, 1.5), (0, np.pi)],
     "joints": [(0, 1), (0, 1), (0, 3), (-np.pi, np.pi), (-np.pi, np.pi)],
-    "joints-lifted": [(-1, 1), (0, 2), (-2, 2), (0, 3), (-1, 1), (-1, 1), (-1, 1), (-1, 1), (0, 2), (0, 2)],
+    "joints-lifted-friction": [(-1, 1), (0, 2), (-2, 2), (0, 3), (-1, 1), (-1, 1), (-1, 1), (-1, 1), (0, 2), (0, 2)],
 }
 
 

@@ -17,7 +17,8 @@ DEFAULT_FAILURE_LEARNER = "distilled-forest"
 # Beside objects success turns to failure within the belief's error: held-out log loss 0.151, of the forest 0.213
 DEFAULT_CLEARANCE_LEARNER = "networks"
 DEFAULT_FEATURES = "projective"
-ENERGY_FEATURES = {"joints": "joints-relative"}  # gravity's work depends on where the joints are, durations do not
+# gravity's work depends on where the joints are, durations do not
+ENERGY_FEATURES = {"joints": "joints-relative", "joints-friction": "joints-relative-friction"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,7 +126,7 @@ def test_features_do_not_depend_on_where_the_field_is_or_how_it_lies() -> None:
 
 
 def test_joints_at_rest_leave_and_arrive_along_the_line_of_sight() -> None:
-    v, v_g, dist, leave, arrive = joints(np.array([[0.1, 0, 0.2, 0, 0.4, 0, 0.6, 0, 1, 1]])).T
+    v, v_g, dist, leave, arrive = joints(np.array([[0.1, 0, 0.2, 0, 0.4, 0, 0.6, 0]])).T
     assert np.allclose([v, v_g, dist, leave, arrive], [[0], [0], [0.5], [0], [0]], atol=1e-6)
 
 

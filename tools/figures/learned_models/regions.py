@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.examples import Examples
 from tailor.models.features.features import FeatureSpace
-from tailor.models.features.joints import joints
+from tailor.models.features.joints import joints, joints_friction
 from tailor.models.features.planar import projective
 from tailor.models.inference import OnnxDuration
 
@@ -36,21 +36,23 @@ class Region:
 
 POSES = Region(projective, "angle_at", f"dist {DIST_M} m, angle_to 0°, v = v_g = 0", "m", 0.0)
 JOINTS = Region(joints, "angle_2", f"dist {STEP_RAD} rad along a, v = 0, v_g = {ARRIVING_RAD_S} rad/s", "rad", -180.0)
+GEARS = replace(JOINTS, space=joints_friction)  # friction is nominal
 
 
 def region_of(card: Card) -> Region | None:
     """The region that fits a model's arguments; None where no picture is known for such arguments."""
     names = [argument["name"] for argument in card["arguments"]]
-    return next((r for r in (POSES, JOINTS) if [q.name for q in r.space.arguments] == names), None)
+    return next((r for r in (POSES, JOINTS, GEARS) if [q.name for q in r.space.arguments] == names), None)
 
 
 def swept(region: Region, angle: Array) -> Array:
-    """Arguments of Figure 7, shape (n, k), for its angles (n,) in radians; gears have their nominal friction."""
+    """Arguments of Figure 7, shape (n, k), for its angles (n,) in radians."""
     zero = np.zeros_like(angle)
     if region is POSES:
         return np.stack([zero, zero, zero, zero, zero + DIST_M, zero, angle, zero], axis=1)
     wa, wb = ARRIVING_RAD_S * np.cos(angle), ARRIVING_RAD_S * np.sin(angle)
-    return np.stack([zero, zero, zero, zero, zero + STEP_RAD, wa, zero, wb, zero + 1.0, zero + 1.0], axis=1)
+    friction = [zero + 1.0] * (len(region.space.arguments) - 8)
+    return np.stack([zero, zero, zero, zero, zero + STEP_RAD, wa, zero, wb, *friction], axis=1)
 
 
 def error_by_region(figure: Any, model: OnnxDuration, rows: Examples, region: Region) -> None:
