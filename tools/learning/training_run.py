@@ -180,5 +180,9 @@ def _publish(
     from tailor.models.export.publishing import Publication, publish
     from tailor.models.runtime import load_model
 
-    path = publish(request.zoo, data, trained, Publication(kind, learner, space, request.seed, command))
+    try:
+        path = publish(request.zoo, data, trained, Publication(kind, learner, space, request.seed, command))
+    except OSError as error:  # that of a full disk names no file
+        written = request.zoo / request.robot / data.manifest["action"] / f"{kind}.onnx"
+        raise UsageError(f"{written} or its card: {error.strerror}, expected files that can be written") from error
     load_model(path)  # a model that fails its own checks must not ship

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +15,7 @@ from tailor.executive import domains
 from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.models.episodes.context_columns import beside_context, without_context
 from tailor.models.episodes.episodes import merge, read_data_set
+from tailor.models.export import zoo_writer
 from tailor.models.inference import OnnxSuccess
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
@@ -91,6 +95,18 @@ def test_other_failures_do_not_count_against_the_object(beside) -> None:
     judged = beside_context(replace(data, episodes=(strayed, *data.episodes[1:])))
     assert judged is not None
     assert all(episode.failure in ("", "touched opponent") for episode in judged.episodes)
+
+
+def test_a_full_disk_is_reported_with_the_model_and_leaves_no_file(beside, tmp_path: Path, monkeypatch) -> None:
+    def full(path, card):
+        path.touch()
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))  # as a write says it: of no file
+
+    monkeypatch.setattr(zoo_writer, "write_card", full)
+    folder = tmp_path / "agilo" / "goToPose"
+    with pytest.raises(UsageError, match=re.escape(f"{folder / 'duration.onnx'} or its card: No space left on device")):
+        list(train_action(list(beside), TrainingRequest("agilo", tmp_path, seed=1, learner="m5")))
+    assert list(folder.iterdir()) == []
 
 
 def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_path: Path) -> None:
