@@ -6,12 +6,11 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.deliberation.context import PlannerCommand, Settings
-from tailor.runtime.planners.named import KAIROS, check_engine, kairos_installed
+from tailor.runtime.planners.named import DURATIVE_HEAD_START, KAIROS, check_engine, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.bus_settings import BusSettings
-from tailor.tools.cli.plan_limits import DURATIVE_HEAD_START
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-DURATIVE_HEAD_START = 250  # plans refined by the built-in search, 0.05 to 0.1 s: short problems keep its plans
 CHECKS_PER_LOOK = 256  # checks of the budget from one look at the memory to the next
 
 
