@@ -13,8 +13,8 @@ import pytest
 
 from tailor.executive.planning import DEFAULT, AnytimeSearch, parse_plan, validate
 from tailor.tools.benchmarks.planning_scale import problem_text
-from tailor.tools.cli import plan_limits, plan_search
 from tailor.tools.main import main
+from tailor.tools.plan_search import limits, sources
 from tests.support.planning_problems import DATA, own, printed
 from tests.unit.executive.planning.pddl.test_language import LAMPS, SWITCHES
 
@@ -398,21 +398,21 @@ def test_anytime_reports_each_improvement(capsys):
 
 
 def test_an_anytime_search_that_ends_by_its_limit_says_that_none_better_was_found(capsys):
-    class AfterThePlan(plan_limits.Limits):
+    class AfterThePlan(limits.Limits):
         def spent(self):
             self.reached = "1 s" if search.best is not None and search.best.plan is not None else ""
             return bool(self.reached)
 
     domain, problem = own("kitchen-durative-s3")
     search = AnytimeSearch(domain, problem, DEFAULT)
-    assert plan_search.anytime(search, AfterThePlan(math.inf, 512)).plan is not None
+    assert sources.anytime(search, AfterThePlan(math.inf, 512)).plan is not None
     assert capsys.readouterr().err.endswith("\nbest plan found: none better within 1 s\n")
 
 
 def test_memory_is_limited(capsys, monkeypatch):
-    assert 5 < plan_limits.memory_mb() < 50_000
+    assert 5 < limits.memory_mb() < 50_000
     values = itertools.count(100.0, 0.5)  # MB at the start and at each look
-    monkeypatch.setattr(plan_limits, "memory_mb", lambda: next(values))
+    monkeypatch.setattr(limits, "memory_mb", lambda: next(values))
     code, _, err = plan(capsys, DOMAIN, str(OWN / "kitchen-s3.pddl"), "--engine", "pocl", "--memory-limit", "1")
     assert code == 1
     assert "no plan within 1 MB of memory" in err

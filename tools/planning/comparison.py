@@ -15,7 +15,7 @@ from rich.table import Table
 from tailor.executive.planning import Problem, Result, validate
 from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.executive.planning.plan_quality import total_cost
-from tailor.tools.cli.plan_search import external
+from tailor.tools.plan_search.sources import external
 
 
 @dataclass(frozen=True, slots=True)

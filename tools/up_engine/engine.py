@@ -33,7 +33,7 @@ from tailor.executive.planning import (
     validate_every_order,
 )
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.plan_search.limits import Limits
 from tailor.tools.up_engine import NAME
 from tailor.tools.up_engine.supported import supported_kind
 from tailor.tools.up_engine.translation import Translation

@@ -12,8 +12,8 @@ from tailor.runtime.planners import named
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import Deployment, executive_config
-from tailor.tools.cli.plan_search import external
 from tailor.tools.main import main
+from tailor.tools.plan_search.sources import external
 from tests.support.planning_problems import DATA, own
 
 KITCHEN = [str(DATA / "own" / f"kitchen-{name}.pddl") for name in ("domain", "s2")]
@@ -133,7 +133,7 @@ def test_auto_asks_kairos_for_a_long_durative_problem_and_falls_back_to_the_sear
         pytest.skip("kairos-planner is not installed")
     assert main(["plan", *DURATIVE, "-v"]) == 0
     assert "kairos" not in capsys.readouterr().err, "short: the head start is enough"
-    monkeypatch.setattr("tailor.tools.cli.plan_search.DURATIVE_HEAD_START", 3)
+    monkeypatch.setattr("tailor.tools.plan_search.sources.DURATIVE_HEAD_START", 3)
     assert main(["plan", *DURATIVE, "-v"]) == 0
     assert "the plan is by kairos" in capsys.readouterr().err
     monkeypatch.setattr(named, "named_planner", lambda command: ["true"])

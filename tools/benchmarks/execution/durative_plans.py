@@ -15,8 +15,8 @@ from rich.table import Table
 
 from tailor.executive.planning import Problem, Result, Settings
 from tailor.tools.benchmarks.planning import read, texts
-from tailor.tools.cli.plan_limits import Limits
-from tailor.tools.cli.plan_search import built_in, external, with_kairos
+from tailor.tools.plan_search.limits import Limits
+from tailor.tools.plan_search.sources import built_in, external, with_kairos
 
 CUPS = (2, 3, 4, 8, 16)
 SEARCH_LIMIT = 20_000  # generated plans of the built-in search

@@ -9,8 +9,8 @@ from tailor.executive.planning import Search, Settings, format_plan, validate
 from tailor.runtime.processes import planner_process
 from tailor.tools.benchmarks.execution.durative_plans import durative_problem_text
 from tailor.tools.benchmarks.planning import read, texts
-from tailor.tools.cli.plan_limits import Limits
-from tailor.tools.cli.plan_search import anytime_beside_kairos
+from tailor.tools.plan_search.limits import Limits
+from tailor.tools.plan_search.sources import anytime_beside_kairos
 
 
 def planned(problem_text, limit_s):

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from tailor.executive.planning import Domain, Problem, Result, Search, Settings
 from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.runtime.planners.named import DURATIVE_HEAD_START, kairos_command
-from tailor.tools.cli.plan_answers import linked_answer
-from tailor.tools.cli.plan_limits import Limits
+from tailor.tools.plan_search.answers import linked_answer
+from tailor.tools.plan_search.limits import Limits
 
 if TYPE_CHECKING:
     from tailor.executive.planning import AnytimeSearch, Plan
