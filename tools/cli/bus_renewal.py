@@ -20,6 +20,7 @@ class BusRenewal:
         settings = bus_settings(arguments)
         self._folder = None if settings.key else run_folder(settings.endpoint)  # a key outlives the bus
         self._session = session
+        self._passwords = self._present_passwords()
         self._connected_ns = self._checked_ns = now_ns
 
     def due(self, now_ns: int) -> bool:
@@ -31,3 +32,13 @@ class BusRenewal:
             self._connected_ns = now_ns
         gone = now_ns - self._connected_ns > GONE_NS
         return gone and self._folder is not None and self._folder.running()
+
+    def final(self, now_ns: int) -> bool:
+        """As `due`, and the passwords are others: this session never connects again. After a bus that hung it does."""
+        return self.due(now_ns) and self._present_passwords() != self._passwords
+
+    def _present_passwords(self) -> bytes:
+        try:
+            return b"" if self._folder is None else self._folder.users_file.read_bytes()
+        except OSError:  # an open bus has none
+            return b""

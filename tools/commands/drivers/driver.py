@@ -19,6 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
+from tailor.tools.cli.bus_end import BusEnd
 from tailor.tools.cli.endpoint import bus_settings, checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.launch.hardware import hardware_of
 
@@ -35,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 when stopped; 1 when the hardware failed --attempts times."""
+    """0 when stopped; 1 when the hardware failed --attempts times. It also ends with the run of the bus."""
     notifier = Notifier.from_environment()
     if arguments.attempts < 0:
         raise UsageError(f"--attempts is {arguments.attempts}, expected at least 0")
@@ -57,4 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
             retry=RetryPolicy(attempts=arguments.attempts),
             report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
         )
-        return 0 if node.run(lambda: stop.requested, notifier) else 1
+        end = BusEnd(arguments, session, stop)
+        code = 0 if node.run(end.reached, notifier) else 1
+    end.check()
+    return code

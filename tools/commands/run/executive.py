@@ -21,6 +21,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.ros_time import wrapped_ns
+from tailor.tools.cli.bus_end import BusEnd
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
@@ -45,7 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compose and check the configuration, then tick until stopped."""
+    """Compose and check the configuration, then tick until stopped, or until another run of the bus has begun."""
     stop, notifier = stop_on_signals(), Notifier.from_environment()
     set_for_loop()
     deployment = deployment_from(arguments)
@@ -66,11 +67,12 @@ def run(arguments: argparse.Namespace) -> int:
         origin["source"] = source_entry(core_source(context.domain.name))
         origin["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), origin, notifier)
-        print_states = not notifier.supervised
+        print_states, end = not notifier.supervised, BusEnd(arguments, session, stop)
         if print_states:
             print(beginning(context, goal), flush=True)
         with state_lines(lambda: state_line(shell.state, context.domain.robot), print_states):
-            state = shell.run(goal, lambda state: stop.requested or (arguments.once and bool(state.task.result)))
+            state = shell.run(goal, lambda state: end.reached() or (arguments.once and bool(state.task.result)))
+    end.check()
     return 1 if arguments.once and state.task.result != "achieved" else 0
 
 

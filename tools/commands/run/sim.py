@@ -8,7 +8,7 @@ import secrets
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.processes.notify import Notifier
-from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
@@ -16,6 +16,7 @@ from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
+from tailor.tools.cli.bus_end import BusEnd
 from tailor.tools.cli.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
@@ -39,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate until stopped."""
+    """Simulate until stopped, or until the run of the bus has ended and another one has begun."""
     notifier = Notifier.from_environment()
     declared = shipped_driver_spec(arguments.robot)
     if not 0.1 <= arguments.speed <= MAX_SPEED:
@@ -54,16 +55,18 @@ def run(arguments: argparse.Namespace) -> int:
         realtime.elevate_bus_threads()
         epoch = 1 + secrets.randbelow(2**62)  # another one at every start
         node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, leave)
-        _run(node, world.body.robot, stop, notifier)
+        end = BusEnd(arguments, session, stop)
+        _run(node, world.body.robot, end, notifier)
+    end.check()
     return 0
 
 
-def _run(node: Node, robot: str, stop: Stop, notifier: Notifier) -> None:
+def _run(node: Node, robot: str, end: BusEnd, notifier: Notifier) -> None:
     print_states = not notifier.supervised
     if print_states:
         print(f"simulated {robot} on the bus; Ctrl-C stops", flush=True)
     with state_lines(lambda: state_line(node.driver.guard, robot), print_states):
-        node.run(lambda: stop.requested, notifier)
+        node.run(end.reached, notifier)
 
 
 def state_line(guard: Guard, robot: str) -> str:
