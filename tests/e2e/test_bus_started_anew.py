@@ -1,11 +1,13 @@
-"""A bus that was started anew has new passwords: driver, simulator and executive end with a line that says so."""
+"""A bus that was started anew has new passwords: a robot's processes end with a line that says so, scenes go on."""
 
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
 from tailor.runtime.bus.opening import open_local_router
 from tailor.runtime.processes.child import Child, tailor
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.messages import ArmRequest, VelocityCommand
 from tailor.tools.launch.hosting import free_endpoint
 from tailor.tools.main import TRY_AGAIN
@@ -19,6 +21,8 @@ BEGINNINGS = {
     ("driver", "robot.toml"): "agilo: not ready",
 }
 PLAIN_ROBOT = 'robot = "agilo"\n[bus]\nconnect = "tcp/127.0.0.1:1"\n[topics]\npose = ""\n[pose]\nstart = [0, 0, 0]\n'
+GOLDEN = Path(__file__).resolve().parents[1] / "data" / "golden" / "soccer-approach-dribble.mcap"
+SCENE_INPUTS = ("exec/provenance", "agilo/odom", "exec/status")  # the robot, where it is, and what it believes
 ANEW = "the bus was started anew, with other passwords; start this command again as well"
 
 
@@ -84,3 +88,26 @@ def test_a_supervisor_is_asked_to_start_it_again(system, tmp_path):
     bus.enter_context(open_local_router(endpoint))
     assert child.wait(PATIENCE_S) == TRY_AGAIN
     assert lines() == [f"tailor sim: bus endpoint {endpoint}: {ANEW}"]
+
+
+def test_scenes_of_the_next_run_are_published(system):
+    endpoint, bus, start, _ = system
+    recorded = {each.key: each for each in open_recording(GOLDEN).messages() if each.key in SCENE_INPUTS}
+
+    def scene_of(session):
+        players = {key: session.player(key, recorded[key].ros_type) for key in SCENE_INPUTS}
+        scenes = session.inbox(["scene"], "agilo")
+
+        def played():
+            for key in SCENE_INPUTS:
+                players[key].publish_encoded(recorded[key].data)
+            return scenes.drain(0)
+
+        return played
+
+    session, _ = bus.enter_context(open_local_router(endpoint))
+    start(("scene", "--live"))
+    wait_until(scene_of(session), "scene")
+    bus.close()
+    session, _ = bus.enter_context(open_local_router(endpoint))
+    wait_until(scene_of(session), "scene of the next run")

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import argparse
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import TypeVar
 
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import bus_settings
 
 GONE_NS = 1_000_000_000  # without a router; zenoh reconnects to an open bus by itself before
 CHECK_NS = 200_000_000
+RETRY_S = 0.2  # while the bus is starting
+
+Opened = TypeVar("Opened")
 
 
 class BusRenewal:
@@ -42,3 +50,23 @@ class BusRenewal:
             return b"" if self._folder is None else self._folder.users_file.read_bytes()
         except OSError:  # an open bus has none
             return b""
+
+
+def opened_anew(sessions: ExitStack, opened: Callable[[ExitStack], Opened], ended: Callable[[], bool]) -> Opened | None:
+    """Close the sessions of a run of the bus and open those of the next.
+
+    Args:
+      sessions: What `opened` entered.
+      opened: Opens all sessions of the command; tried until it succeeds, each time up to three seconds.
+      ended: Whether the command is to end instead.
+
+    Returns:
+      What `opened` returns; None if the command is to end.
+    """
+    while not ended():
+        sessions.close()
+        try:
+            return opened(sessions)
+        except UsageError:  # the router is not ready yet, or has ended again
+            time.sleep(RETRY_S)
+    return None

@@ -27,7 +27,7 @@ def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Noti
     Args:
       session: With a role that may publish scenes.
       stopped: Called twenty times a second.
-      notifier: Receives that this process is ready, its state, and a package's fault.
+      notifier: Receives that it subscribes, a report of every look, and a package's fault.
     """
     queue, subscription = session.subscribe_all("**")
     loop, feed, publishers, fault = Loop(POLL_NS, MonotonicClock()), SceneFeed(), dict[str, Publisher](), ""
@@ -46,7 +46,6 @@ def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Noti
         if feed.fault != fault:
             fault = feed.fault
             notifier.status(f"scene: {fault}")
-    notifier.stopping()
     subscription.undeclare()
 
 

@@ -12,8 +12,7 @@ from rich.live import Live
 from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
-from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
 from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.operator.current_button import CurrentButton
@@ -25,7 +24,6 @@ from tailor.tools.status.watcher import Watcher
 
 KEY_S = 0.02  # from a key to the e-stop, at most
 DRAW_NS = 250_000_000
-RETRY_S = 0.2  # while the bus is starting
 
 
 class LiveView:
@@ -53,7 +51,8 @@ class LiveView:
                     model = SystemModel(time.monotonic_ns())
                     if self._watch(session, model, keyboard, live):
                         break
-                    if (opened := self._open_again(sessions, keyboard)) is None:
+                    opened = opened_anew(sessions, self._open, lambda: self._ended(keyboard.read()))
+                    if opened is None:
                         break
                     session = opened
                 self._key.finish()
@@ -65,16 +64,6 @@ class LiveView:
         people = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(people))
         return session
-
-    def _open_again(self, sessions: ExitStack, keyboard: Keyboard) -> Session | None:
-        """Sessions of the bus that was started anew; None if the view is to end."""
-        while not self._ended(keyboard.read()):
-            sessions.close()
-            try:
-                return self._open(sessions)
-            except UsageError:  # the router is not ready yet, or has ended again
-                time.sleep(RETRY_S)
-        return None
 
     def _watch(self, session: Session, model: SystemModel, keyboard: Keyboard, live: Live) -> bool:
         """Whether the view is to end; if not, new sessions are due."""

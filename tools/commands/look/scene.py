@@ -10,14 +10,19 @@ import argparse
 import json
 import os
 import sys
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
 
+from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.notify import Notifier
-from tailor.runtime.stopping import stop_on_signals
+from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.output_files import check_output
 from tailor.tools.recordings.damage_notice import warn
@@ -82,10 +87,25 @@ def _layout(arguments: argparse.Namespace) -> int:
 
 
 def _live(arguments: argparse.Namespace) -> int:
+    """Publish the scenes of one run of the bus after another."""
     stop, notifier = stop_on_signals(), Notifier.from_environment()
     if sys.platform == "linux":
         os.nice(NICENESS)
-    with open_bus(arguments, "scene", sender=sender_of(arguments)) as session:
+
+    def opened(sessions: ExitStack) -> Session:
+        return sessions.enter_context(open_bus(arguments, "scene", sender=sender_of(arguments)))
+
+    with ExitStack() as sessions:
+        session: Session | None = opened(sessions)
         codec.prime()
-        publish_scenes(session, lambda: stop.requested, notifier)
+        while session is not None:
+            publish_scenes(session, _run_ended(arguments, session, stop), notifier)
+            session = opened_anew(sessions, opened, lambda: stop.requested)
+        notifier.stopping()
     return 0
+
+
+def _run_ended(arguments: argparse.Namespace, session: Session, stop: Stop) -> Callable[[], bool]:
+    """Tells whether a stop is requested, or a session with the next run of the bus is due."""
+    renewal = BusRenewal(arguments, session, time.monotonic_ns())
+    return lambda: stop.requested or renewal.due(time.monotonic_ns())

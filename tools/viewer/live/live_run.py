@@ -5,14 +5,15 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-import time
 from contextlib import ExitStack
+from functools import partial
 
+from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
 from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.operator.current_button import CurrentButton
@@ -25,7 +26,6 @@ from tailor.tools.viewer.page import page
 from tailor.tools.viewer.timeline import RunTimeline
 
 NICENESS = 10  # the executive has priority over the viewer
-RETRY_S = 0.5  # while the bus is starting
 
 
 class LiveRun:
@@ -50,10 +50,13 @@ class LiveRun:
             if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
                 os.nice(NICENESS)
             codec.prime()
-            self._listen(sessions, f"http://127.0.0.1:{port}/ shows {bus_settings(self._arguments).endpoint}")
-            while not self._stop.requested:
-                sessions.close()
-                self._listen_again(sessions, endpoint is not None)
+            session: Session | None = sessions.enter_context(open_bus(self._arguments, "observer"))
+            shown = bus_settings(self._arguments).endpoint
+            print(f"http://127.0.0.1:{port}/ shows {shown}; Ctrl-C stops it", flush=True)
+            open_again = partial(self._open_again, button=endpoint is not None)
+            while session is not None:
+                self._listen(sessions, session)
+                session = opened_anew(sessions, open_again, lambda: self._stop.requested)
 
     def _stop_endpoint(self, sessions: ExitStack) -> StopEndpoint | None:
         """The page's stop button, with a session of its own; None where this user may not stop drivers."""
@@ -68,10 +71,18 @@ class LiveRun:
         session = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(session))
 
-    def _listen(self, sessions: ExitStack, heading: str = "") -> None:
+    def _open_again(self, sessions: ExitStack, button: bool) -> Session:
+        """Sessions with another run of the bus, whose page begins anew."""
+        self._broadcast.beat(0.0, bus=False)  # opening a session takes up to three seconds
+        if button:
+            self._take_button(sessions)
+        session = sessions.enter_context(open_bus(self._arguments, "observer"))
+        self._broadcast.restart()
+        return session
+
+    def _listen(self, sessions: ExitStack, session: Session) -> None:
         """Follow the bus until a stop is requested or new sessions are due."""
         arguments, clock = self._arguments, MonotonicClock()
-        session = sessions.enter_context(open_bus(arguments, "observer"))
         intake, subscribe_all = session.subscribe_all("**")
         sessions.callback(subscribe_all.undeclare)
         explainer = None if arguments.no_models else Explainer()
@@ -80,17 +91,4 @@ class LiveRun:
             intake, timeline, self._broadcast, arguments.sender, now_ns, connected=lambda: session.connected
         )
         renewal = BusRenewal(arguments, session, now_ns)
-        if heading:
-            print(f"{heading}; Ctrl-C stops it", flush=True)
         listener.run(clock, lambda: self._stop.requested or renewal.due(clock.now_ns()))
-
-    def _listen_again(self, sessions: ExitStack, button: bool) -> None:
-        """Another run: its page begins anew."""
-        self._broadcast.beat(0.0, bus=False)  # opening a session takes up to three seconds
-        try:
-            if button:
-                self._take_button(sessions)
-            self._broadcast.restart()
-            self._listen(sessions)
-        except UsageError:  # the router is not ready yet, or has ended again
-            time.sleep(RETRY_S)
