@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,7 @@ pytestmark = [
     pytest.mark.xdist_group("browser"),
 ]
 AT = "Number(document.documentElement.dataset.at)"
+NOT_DONE = ["failed", "aborted"]
 NAMES = ["x (m)", "y (m)", "phi (rad)", "v (m/s)", "omega (rad/s)", "ball_x (m)", "ball_y (m)"]
 
 
@@ -194,6 +196,30 @@ def test_a_heading_folds_its_panel_and_what_is_below_moves_up(browser: Browser, 
     browser.value("document.querySelector('#scene h2').click()")
     browser.frame()
     assert browser.value("document.querySelector('#scene .layers').offsetHeight") > 100
+
+
+def test_the_button_that_folds_a_panel_is_named_as_the_panel(browser: Browser, soccer: str) -> None:
+    opened(browser, soccer, 4.0)
+    nodes = browser.send("Accessibility.getFullAXTree")["nodes"]
+    names = [node["name"]["value"] for node in nodes if node.get("role", {}).get("value") == "button"]
+    assert {"Scene", "Subgoals", "Plan", "Timeline"} <= set(names)
+
+
+def test_an_aborted_action_has_another_colour_than_a_failed_one_and_both_are_explained(
+    browser: Browser, tmp_path: Path
+) -> None:
+    outcomes = iter(("failed", "aborted", "done", "done"))
+    run = [
+        replace(each, message=replace(each.message, outcome=next(outcomes)))
+        if isinstance(each.message, m.ActionFinished)
+        else each
+        for each in synthetic_run.arm_run()
+    ]
+    opened(browser, written(tmp_path / "arm.html", rows_of(run, RunTimeline())), 6.0)
+    colours = {kind: f"getComputedStyle(document.querySelector('#timeline .bar.{kind}')).fill" for kind in NOT_DONE}
+    assert len({browser.value(colour) for colour in colours.values()}) == 2
+    assert count(browser, "#timeline .bar.actual") == 4
+    assert browser.value("[...document.querySelectorAll('#timeline .legend i')].map((e) => e.textContent)") == NOT_DONE
 
 
 def test_a_drawing_below_a_heading_of_three_lines_keeps_its_numbers(browser: Browser, soccer: str) -> None:

@@ -37,7 +37,10 @@ function panel(id) {
 }
 
 function foldable(section, heading) {
-  const fold = html("button", { type: "button", class: "fold", "aria-expanded": true, "aria-label": "fold" });
+  const title = heading.querySelector("span");
+  title.id = `${section.id}-title`;
+  const named = { "aria-expanded": true, "aria-labelledby": title.id }; // the scene of an arm has another title
+  const fold = html("button", { type: "button", class: "fold", ...named });
   heading.prepend(fold);
   heading.addEventListener("click", () => {
     fold.setAttribute("aria-expanded", !section.classList.toggle("folded"));

@@ -19,9 +19,9 @@ function actionLane(run, x, top) {
       });
     };
     parts.push(bar("predicted", action.begin + action.predicted, top + 16));
-    parts.push(
-      bar(action.ended && action.ended.outcome !== "done" ? "actual failed" : "actual", action.until, top + 27),
-    );
+    const outcome = action.ended?.outcome ?? "done";
+    const kind = outcome === "done" ? "actual" : outcome === "aborted" ? "actual aborted" : "actual failed";
+    parts.push(bar(kind, action.until, top + 27));
     const words = action.ended
       ? `${action.action}  ${action.ended.actual.toFixed(1)} s (${signed(action.ended.actual - action.predicted)})`
       : action.action;

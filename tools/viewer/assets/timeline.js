@@ -57,7 +57,7 @@ class Timeline {
     );
     this.listen(drawing);
     this.panel.body.replaceChildren(html("div", { class: "layers" }, drawing, this.hand));
-    this.panel.note.textContent = this.summary();
+    this.panel.note.replaceChildren(`${this.summary()} `, this.outcomes());
   }
 
   lanes() {
@@ -117,6 +117,12 @@ class Timeline {
   commanded() {
     const rows = this.run.all("series cmd_vel");
     return rows.length ? [{ points: rows.map((row) => [row.at, row.v]), kind: "ghost" }] : [];
+  }
+
+  /** A legend of the colours of actions that did not end as they should, as far as there are any. */
+  outcomes() {
+    const found = new Set(this.run.actions().map((action) => action.ended?.outcome));
+    return legend(["failed", "aborted"].filter((each) => found.has(each)).map((each) => [each, each]));
   }
 
   summary() {
