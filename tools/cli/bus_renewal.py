@@ -33,17 +33,26 @@ class BusRenewal:
 
     def due(self, now_ns: int) -> bool:
         """Whether the session is cut off and a bus runs: new sessions have to be opened."""
+        return self._gone(now_ns) and self._runs()
+
+    def final(self, now_ns: int) -> bool:
+        """As `due`, and the passwords are others: this session never connects again. After a bus that hung it does.
+
+        It does not wait for a bus that hangs, as `due` may, which knocks at it.
+        """
+        return self._gone(now_ns) and self._present_passwords() != self._passwords and self._runs()
+
+    def _gone(self, now_ns: int) -> bool:
+        """Whether the session has been cut off for a while; looked at a few times a second."""
         if now_ns - self._checked_ns < CHECK_NS:
             return False
         self._checked_ns = now_ns
         if self._session.connected:
             self._connected_ns = now_ns
-        gone = now_ns - self._connected_ns > GONE_NS
-        return gone and self._folder is not None and self._folder.running()
+        return now_ns - self._connected_ns > GONE_NS
 
-    def final(self, now_ns: int) -> bool:
-        """As `due`, and the passwords are others: this session never connects again. After a bus that hung it does."""
-        return self.due(now_ns) and self._present_passwords() != self._passwords
+    def _runs(self) -> bool:
+        return self._folder is not None and self._folder.running()
 
     def _present_passwords(self) -> bytes:
         try:

@@ -29,6 +29,15 @@ def test_a_session_waits_for_a_bus_that_hung_though_it_may_be_opened_anew(cut_of
     assert renewal.due(now_ns + CHECK_NS)
 
 
+def test_a_loop_never_knocks_at_a_bus_that_hangs(cut_off, monkeypatch):
+    """Knocks that nobody answers fill a queue, and then the next one waits: for seconds, in the loop of a driver."""
+    _, renewal, now_ns = cut_off
+    knocks = []
+    monkeypatch.setattr(RunFolder, "running", knocks.append)
+    renewal.final(now_ns)
+    assert knocks == []
+
+
 def test_a_session_is_cut_off_for_good_by_other_passwords(cut_off):
     folder, renewal, now_ns = cut_off
     folder.users_file.write_text("observer:another")
