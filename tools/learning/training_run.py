@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Train = Callable[[Sequence[Episode], FeatureSpace, str, int], Trained]
 
 MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
-MIN_IN_CONTEXT = 100  # finished ones: fewer do not determine intervals of their own
+MIN_APART = 100  # finished ones, beside objects and without: fewer do not determine intervals of their own
 NEVER_FAILED = "constant"  # the learner for an action that never failed, but names a model of success
 
 
@@ -94,7 +94,7 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     spaces = feature_spaces(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in _jobs(data, request)]
+    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
     every = (*own, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:
@@ -135,7 +135,7 @@ def _needs_success(robot: str, data: DataSet) -> bool:
     return f"{data.manifest['action']}/success" in {action.success_model for action in actions}
 
 
-def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:
+def own_jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, Train]]:
     """Kind, learner and training function of each model that the episodes suffice for."""
     from tailor.models.episodes.episodes import UNOBSERVED
     from tailor.models.episodes.regression_targets import ENERGY
@@ -143,7 +143,8 @@ def _jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str, T
 
     if data.manifest.get("objects"):
         return
-    if sum(episode.in_context and episode.finished for episode in data.episodes) >= MIN_IN_CONTEXT:
+    beside = [episode.in_context for episode in data.episodes if episode.finished]
+    if min(beside.count(True), beside.count(False)) >= MIN_APART:
         yield "duration", request.learner, training.train_duration_alone
         yield "duration_beside", request.learner, training.train_duration_beside
     else:

@@ -1,5 +1,6 @@
-"""Training beside objects: episodes of one run share its path, so training and test never share a run."""
+"""Training beside objects: which models there are, and that training and test never share a run."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.training import success_training
 from tailor.tools.learning.training_request import TrainingRequest
-from tailor.tools.learning.training_run import context_jobs
+from tailor.tools.learning.training_run import context_jobs, own_jobs
 
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
 
@@ -48,3 +49,15 @@ def test_episodes_of_one_run_have_a_number_of_their_own_however_many_objects_eac
     assert len(learned) == sum(len(each.episodes) for each in sets)
     assert len(runs) == len({run for run, _ in runs}) == len({number for _, number in runs})
     assert {number for _, number in runs} == set(range(len(runs)))
+
+
+@pytest.mark.parametrize(
+    ("in_context", "alone", "apart"),
+    [(100, 100, True), (99, 100, False), (100, 99, False), (150, 0, False)],
+)
+def test_intervals_are_apart_only_where_both_sorts_of_episodes_determine_them(in_context, alone, apart) -> None:
+    data = beside(in_context + alone, 1, noted=False)
+    marked = tuple(replace(episode, in_context=episode.number < in_context) for episode in data.episodes)
+    kinds = [kind for kind, *_ in own_jobs(replace(data, episodes=marked), TrainingRequest("agilo", Path("zoo")))]
+    assert ("duration_beside" in kinds) == apart
+    assert "duration" in kinds
