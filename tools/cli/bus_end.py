@@ -17,18 +17,18 @@ from tailor.tools.cli.endpoint import bus_settings
 
 
 class BusEnd:
-    """Tells a loop when to end: on request, or when its session is cut off for good."""
+    """Tells a loop when to end: on request, or when its session is cut off for good. To be made before the session."""
 
-    def __init__(self, arguments: argparse.Namespace, session: Session, stop: Stop) -> None:
+    def __init__(self, arguments: argparse.Namespace, stop: Stop) -> None:
         """`arguments`: parsed flags of `configure_bus`; `stop`: request to end."""
         self._endpoint = bus_settings(arguments).endpoint
-        self._renewal = BusRenewal(arguments, session, time.monotonic_ns())
+        self._renewal = BusRenewal(arguments)
         self._stop = stop
         self._cut_off = False
 
-    def reached(self) -> bool:
+    def reached(self, session: Session) -> bool:
         """Whether the loop is to end; it asks in every period, which takes microseconds."""
-        self._cut_off = self._cut_off or self._renewal.final(time.monotonic_ns())
+        self._cut_off = self._cut_off or self._renewal.final(session, time.monotonic_ns())
         return self._stop.requested or self._cut_off
 
     def check(self) -> None:

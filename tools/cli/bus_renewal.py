@@ -21,38 +21,38 @@ Opened = TypeVar("Opened")
 
 
 class BusRenewal:
-    """Watches a session of a command that outlives the bus."""
+    """Watches the session of a command that outlives the bus. To be made before the session is opened."""
 
-    def __init__(self, arguments: argparse.Namespace, session: Session, now_ns: int) -> None:
-        """`arguments`: parsed flags of `configure_bus`; `now_ns`: monotonic time."""
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        """`arguments`: parsed flags of `configure_bus`."""
         settings = bus_settings(arguments)
         self._folder = None if settings.key else run_folder(settings.endpoint)  # a key outlives the bus
-        self._session = session
+        self._run = None if self._folder is None else self._folder.run
         self._passwords = self._present_passwords()
-        self._connected_ns = self._checked_ns = now_ns
+        self._connected_ns: int | None = None
+        self._checked_ns: int | None = None
 
-    def due(self, now_ns: int) -> bool:
-        """Whether the session is cut off and a bus runs: new sessions have to be opened."""
-        return self._gone(now_ns) and self._runs()
+    def due(self, session: Session, now_ns: int) -> bool:
+        """Whether the session is cut off and another run of the bus is there: new sessions have to be opened.
 
-    def final(self, now_ns: int) -> bool:
-        """As `due`, and the passwords are others: this session never connects again. After a bus that hung it does.
+        To a router that stood still zenoh reconnects by itself, and to close a session of one takes ten seconds.
 
-        It does not wait for a bus that hangs, as `due` may, which knocks at it.
+        Args:
+          session: Opened after this object was made.
+          now_ns: Monotonic time.
         """
-        return self._gone(now_ns) and self._present_passwords() != self._passwords and self._runs()
-
-    def _gone(self, now_ns: int) -> bool:
-        """Whether the session has been cut off for a while; looked at a few times a second."""
-        if now_ns - self._checked_ns < CHECK_NS:
+        if self._checked_ns is not None and now_ns - self._checked_ns < CHECK_NS:
             return False
         self._checked_ns = now_ns
-        if self._session.connected:
+        if self._connected_ns is None or session.connected:
             self._connected_ns = now_ns
-        return now_ns - self._connected_ns > GONE_NS
+        if self._folder is None or now_ns - self._connected_ns <= GONE_NS:
+            return False
+        return self._folder.run != self._run and self._folder.running()
 
-    def _runs(self) -> bool:
-        return self._folder is not None and self._folder.running()
+    def final(self, session: Session, now_ns: int) -> bool:
+        """As `due`, and the passwords are others: this session never connects again, as that of an open bus does."""
+        return self.due(session, now_ns) and self._present_passwords() != self._passwords
 
     def _present_passwords(self) -> bytes:
         try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
@@ -49,8 +48,10 @@ class RecorderBus:
 
     def renew(self, now_ns: int) -> None:
         """Open another session if one is due; takes up to three seconds while the bus is starting."""
-        if self._present is not None and not self._present[1].due(now_ns):
-            return
+        if self._present is not None:
+            session, renewal = self._present
+            if not renewal.due(session, now_ns):
+                return
         self._present, self.requests = None, None
         self._sessions.close()
         try:
@@ -59,8 +60,9 @@ class RecorderBus:
             return
 
     def _open(self) -> None:
+        renewal = BusRenewal(self._arguments)
         session = self._sessions.enter_context(open_bus(self._arguments, "recorder", sender=sender_of(self._arguments)))
         _, subscription = session.subscribe_all("**", self.queue)
         self._sessions.callback(subscription.undeclare)
         self.requests = session.service_server(self._service) if self._service else None
-        self._present = session, BusRenewal(self._arguments, session, time.monotonic_ns())
+        self._present = session, renewal

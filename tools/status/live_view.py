@@ -35,6 +35,8 @@ class LiveView:
         self._endpoint = bus_settings(arguments).endpoint
         self._button = CurrentButton()
         self._key = StopKey(self._button)
+        self._model = SystemModel(time.monotonic_ns())
+        self._read_ns = 0  # up to which the bus was read
 
     def run(self) -> Picture:
         """The last state.
@@ -43,49 +45,59 @@ class LiveView:
           UsageError: At the start no router responds, or it refuses this user.
         """
         with ExitStack() as sessions:
-            session = self._open(sessions)
+            renewal, session = self._open(sessions)
             codec.prime()
             console = Console(highlight=False, markup=False)
             with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
-                while True:
-                    model = SystemModel(time.monotonic_ns())
-                    if self._watch(session, model, keyboard, live):
-                        break
-                    opened = opened_anew(sessions, self._open, lambda: self._ended(keyboard.read()))
+                while not self._watch(session, renewal, keyboard, live):
+                    opened = opened_anew(sessions, self._open, lambda: self._is_to_end(keyboard, live))
                     if opened is None:
                         break
-                    session = opened
+                    renewal, session = opened
                 self._key.finish()
-            return model.picture(time.monotonic_ns())
+            return self._model.picture(self._read_ns)  # not later: nobody is silent since nothing is read
 
-    def _open(self, sessions: ExitStack) -> Session:
+    def _open(self, sessions: ExitStack) -> tuple[BusRenewal, Session]:
         """The observer's session, and one of the stop key: a flood of all that is observed must not delay it."""
+        renewal = BusRenewal(self._arguments)
         session = sessions.enter_context(open_bus(self._arguments, "observer"))
         people = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(people))
-        return session
+        return renewal, session
 
-    def _watch(self, session: Session, model: SystemModel, keyboard: Keyboard, live: Live) -> bool:
+    def _is_to_end(self, keyboard: Keyboard, live: Live) -> bool:
+        """Whether the view is to end while a bus is waited for; keys are heard, and the state is drawn as it ages."""
+        if self._ended(keys := keyboard.read()):
+            return True
+        self._key.poll(keys)
+        self._draw(keyboard, live)
+        return False
+
+    def _watch(self, session: Session, renewal: BusRenewal, keyboard: Keyboard, live: Live) -> bool:
         """Whether the view is to end; if not, new sessions are due."""
         drawn_ns, began_ns = 0, time.monotonic_ns()
+        self._model, self._read_ns = SystemModel(began_ns), began_ns
         queue, subscription = session.subscribe_all("**")
-        watcher, renewal = Watcher(queue, model, began_ns), BusRenewal(self._arguments, session, began_ns)
+        watcher = Watcher(queue, self._model, began_ns)
         try:
             while not self._ended(keys := keyboard.read()):
                 self._key.poll(keys)
                 now_ns = time.monotonic_ns()
-                if renewal.due(now_ns):
+                if renewal.due(session, now_ns):
                     return False
                 if now_ns - drawn_ns >= DRAW_NS:
-                    drawn_ns = now_ns
+                    drawn_ns = self._read_ns = now_ns
                     watcher.poll(now_ns)
-                    picture = model.picture(now_ns)
-                    shown = (self._key.line(picture, keyboard.there), panel(picture, self._endpoint))
-                    live.update(Group(*shown), refresh=True)
+                    self._draw(keyboard, live)
                 time.sleep(KEY_S)
         finally:
             subscription.undeclare()
         return True
+
+    def _draw(self, keyboard: Keyboard, live: Live) -> None:
+        picture = self._model.picture(time.monotonic_ns())
+        shown = (self._key.line(picture, keyboard.there), panel(picture, self._endpoint))
+        live.update(Group(*shown), refresh=True)
 
     def _ended(self, keys: bytes) -> bool:
         return self._stop.requested or b"q" in keys

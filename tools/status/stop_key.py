@@ -28,18 +28,22 @@ class Button(Protocol):
 
 
 class StopKey:
-    """Presses the button in threads of its own, so that neither drawing nor a flood delays an e-stop."""
+    """Presses the button in threads of its own, so that neither drawing nor a flood delays an e-stop.
+
+    A press while the bus is lost is repeated once it is back.
+    """
 
     def __init__(self, button: Button) -> None:
         self._button = button
-        self._pressed = False
+        self._pressed = self._unheard = False
         self._presses: list[Thread] = []
 
     def poll(self, keys: bytes) -> None:
         """Take the keys since the last call, any of which may be the stop key."""
-        if not KEYS.intersection(keys):
+        pressed = bool(KEYS.intersection(keys))
+        if not pressed and not (self._unheard and self._button.connected):
             return
-        self._pressed = True
+        self._pressed, self._unheard = True, not self._button.connected
         self._presses = [press for press in self._presses if press.is_alive()]
         if len(self._presses) < MAX_WAITING:
             self._presses.append(Thread(target=self._button.press, daemon=True))

@@ -68,6 +68,15 @@ class RunFolder:
                 return False
         return True
 
+    @property
+    def run(self) -> tuple[int, int] | None:
+        """What tells one run of this bus from the next, whose passwords are others; None if its folder is gone."""
+        try:
+            status = (self.path / PROFILE).stat()  # every run writes it anew
+        except OSError:
+            return None
+        return status.st_ino, status.st_mtime_ns
+
     def key_profile(self) -> KeyProfile:
         """Keys of this bus; the plain ones if its folder does not name any."""
         try:

@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     leave = checked_sender(arguments.leave, "--leave")
     hardware = hardware_of(arguments.hardware, bus_settings(arguments).endpoint)
     spec = shipped_driver_spec(hardware.robot)
-    stop = stop_on_signals()
+    end = BusEnd(arguments, stop_on_signals())
     with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
@@ -58,7 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
             retry=RetryPolicy(attempts=arguments.attempts),
             report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
         )
-        end = BusEnd(arguments, session, stop)
-        code = 0 if node.run(end.reached, notifier) else 1
+        code = 0 if node.run(lambda: end.reached(session), notifier) else 1
     end.check()
     return code

@@ -92,20 +92,20 @@ def _live(arguments: argparse.Namespace) -> int:
     if sys.platform == "linux":
         os.nice(NICENESS)
 
-    def opened(sessions: ExitStack) -> Session:
-        return sessions.enter_context(open_bus(arguments, "scene", sender=sender_of(arguments)))
+    def opened(sessions: ExitStack) -> tuple[BusRenewal, Session]:
+        renewal = BusRenewal(arguments)
+        return renewal, sessions.enter_context(open_bus(arguments, "scene", sender=sender_of(arguments)))
 
     with ExitStack() as sessions:
-        session: Session | None = opened(sessions)
+        run: tuple[BusRenewal, Session] | None = opened(sessions)
         codec.prime()
-        while session is not None:
-            publish_scenes(session, _run_ended(arguments, session, stop), notifier)
-            session = opened_anew(sessions, opened, lambda: stop.requested)
+        while run is not None:
+            publish_scenes(run[1], _run_ended(*run, stop), notifier)
+            run = opened_anew(sessions, opened, lambda: stop.requested)
         notifier.stopping()
     return 0
 
 
-def _run_ended(arguments: argparse.Namespace, session: Session, stop: Stop) -> Callable[[], bool]:
+def _run_ended(renewal: BusRenewal, session: Session, stop: Stop) -> Callable[[], bool]:
     """Tells whether a stop is requested, or a session with the next run of the bus is due."""
-    renewal = BusRenewal(arguments, session, time.monotonic_ns())
-    return lambda: stop.requested or renewal.due(time.monotonic_ns())
+    return lambda: stop.requested or renewal.due(session, time.monotonic_ns())

@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compose and check the configuration, then tick until stopped, or until another run of the bus has begun."""
-    stop, notifier = stop_on_signals(), Notifier.from_environment()
+    end, notifier = BusEnd(arguments, stop_on_signals()), Notifier.from_environment()
     set_for_loop()
     deployment = deployment_from(arguments)
     config = executive_config(arguments.domain, deployment)
@@ -67,11 +67,11 @@ def run(arguments: argparse.Namespace) -> int:
         origin["source"] = source_entry(core_source(context.domain.name))
         origin["realtime"] = realtime.prepare()
         shell = Shell(context, session, MonotonicClock(), origin, notifier)
-        print_states, end = not notifier.supervised, BusEnd(arguments, session, stop)
+        print_states = not notifier.supervised
         if print_states:
             print(beginning(context, goal), flush=True)
         with state_lines(lambda: state_line(shell.state, context.domain.robot), print_states):
-            state = shell.run(goal, lambda state: end.reached() or (arguments.once and bool(state.task.result)))
+            state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and bool(state.task.result)))
     end.check()
     return 1 if arguments.once and state.task.result != "achieved" else 0
 

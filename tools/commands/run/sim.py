@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import secrets
+from collections.abc import Callable
 
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock
@@ -48,25 +49,24 @@ def run(arguments: argparse.Namespace) -> int:
     leave = checked_sender(arguments.leave, "--leave")
     deployment = deployment_from(arguments)
     world = make_world(arguments.robot, deployment.scenario, deployment.executive.seed)
-    stop = stop_on_signals()
+    end = BusEnd(arguments, stop_on_signals())
     with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
         epoch = 1 + secrets.randbelow(2**62)  # another one at every start
         node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, leave)
-        end = BusEnd(arguments, session, stop)
-        _run(node, world.body.robot, end, notifier)
+        _run(node, world.body.robot, lambda: end.reached(session), notifier)
     end.check()
     return 0
 
 
-def _run(node: Node, robot: str, end: BusEnd, notifier: Notifier) -> None:
+def _run(node: Node, robot: str, ended: Callable[[], bool], notifier: Notifier) -> None:
     print_states = not notifier.supervised
     if print_states:
         print(f"simulated {robot} on the bus; Ctrl-C stops", flush=True)
     with state_lines(lambda: state_line(node.driver.guard, robot), print_states):
-        node.run(end.reached, notifier)
+        node.run(ended, notifier)
 
 
 def state_line(guard: Guard, robot: str) -> str:

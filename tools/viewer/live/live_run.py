@@ -50,13 +50,13 @@ class LiveRun:
             if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
                 os.nice(NICENESS)
             codec.prime()
-            session: Session | None = sessions.enter_context(open_bus(self._arguments, "observer"))
+            opened: tuple[BusRenewal, Session] | None = self._open(sessions)
             shown = bus_settings(self._arguments).endpoint
             print(f"http://127.0.0.1:{port}/ shows {shown}; Ctrl-C stops it", flush=True)
             open_again = partial(self._open_again, button=endpoint is not None)
-            while session is not None:
-                self._listen(sessions, session)
-                session = opened_anew(sessions, open_again, lambda: self._stop.requested)
+            while opened is not None:
+                self._listen(sessions, *opened)
+                opened = opened_anew(sessions, open_again, lambda: self._stop.requested)
 
     def _stop_endpoint(self, sessions: ExitStack) -> StopEndpoint | None:
         """The page's stop button, with a session of its own; None where this user may not stop drivers."""
@@ -71,16 +71,20 @@ class LiveRun:
         session = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(session))
 
-    def _open_again(self, sessions: ExitStack, button: bool) -> Session:
+    def _open(self, sessions: ExitStack) -> tuple[BusRenewal, Session]:
+        renewal = BusRenewal(self._arguments)
+        return renewal, sessions.enter_context(open_bus(self._arguments, "observer"))
+
+    def _open_again(self, sessions: ExitStack, button: bool) -> tuple[BusRenewal, Session]:
         """Sessions with another run of the bus, whose page begins anew."""
         self._broadcast.beat(0.0, bus=False)  # opening a session takes up to three seconds
         if button:
             self._take_button(sessions)
-        session = sessions.enter_context(open_bus(self._arguments, "observer"))
-        self._broadcast.restart()
-        return session
+        opened = self._open(sessions)
+        self._broadcast.restart()  # not earlier: an empty page passes for a live one
+        return opened
 
-    def _listen(self, sessions: ExitStack, session: Session) -> None:
+    def _listen(self, sessions: ExitStack, renewal: BusRenewal, session: Session) -> None:
         """Follow the bus until a stop is requested or new sessions are due."""
         arguments, clock = self._arguments, MonotonicClock()
         intake, subscribe_all = session.subscribe_all("**")
@@ -90,5 +94,4 @@ class LiveRun:
         listener = BusListener(
             intake, timeline, self._broadcast, arguments.sender, now_ns, connected=lambda: session.connected
         )
-        renewal = BusRenewal(arguments, session, now_ns)
-        listener.run(clock, lambda: self._stop.requested or renewal.due(clock.now_ns()))
+        listener.run(clock, lambda: self._stop.requested or renewal.due(session, clock.now_ns()))

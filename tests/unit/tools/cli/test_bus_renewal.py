@@ -1,44 +1,99 @@
-"""A session that is cut off for good is told from one whose bus hung."""
+"""Sessions are opened anew, or end, for the next run of a bus alone: closing one of a router that hangs takes 10 s."""
+
+from __future__ import annotations
 
 import argparse
-from types import SimpleNamespace
+import socket
+from contextlib import contextmanager
+from dataclasses import dataclass
 
 import pytest
 
 from tailor.runtime.bus.rights.hosted_folder import hosted
-from tailor.runtime.bus.rights.run_folder import RunFolder
+from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder
 from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal
 
 ENDPOINT = "tcp/127.0.0.1:7999"
-FLAGS = argparse.Namespace(config="", connect=ENDPOINT)
+GONE = GONE_NS + CHECK_NS
 
 
-@pytest.fixture
-def cut_off(tmp_path, monkeypatch):
-    """A renewal of a session that lost a bus with passwords, which listens again; and when it knows of the loss."""
-    monkeypatch.setenv("TAILOR_RUN_DIR", str(tmp_path))
-    monkeypatch.setattr(RunFolder, "running", lambda folder: True)
-    with hosted(ENDPOINT, ["observer"]) as folder:
-        renewal = BusRenewal(FLAGS, SimpleNamespace(connected=False), 0)
-        yield folder, renewal, GONE_NS + CHECK_NS
+@pytest.fixture(autouse=True)
+def base(tmp_path, monkeypatch):
+    """Folder of all runs, as of a login session."""
+    monkeypatch.delenv("TAILOR_RUN_DIR", raising=False)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
 
 
-def test_a_session_waits_for_a_bus_that_hung_though_it_may_be_opened_anew(cut_off):
-    _, renewal, now_ns = cut_off
-    assert not renewal.final(now_ns)
-    assert renewal.due(now_ns + CHECK_NS)
+@contextmanager
+def bus(users=("people",)):
+    """A run of a bus whose router accepts connections and does nothing else, as one that hangs does."""
+    with hosted(ENDPOINT, users) as folder, socket.socket(socket.AF_UNIX) as router:
+        router.bind(str(folder.path / SOCKET))
+        router.listen()
+        yield
 
 
-def test_a_loop_never_knocks_at_a_bus_that_hangs(cut_off, monkeypatch):
+@dataclass
+class Cut:
+    """A session that is connected until it is cut off."""
+
+    connected: bool = True
+
+
+def renewal(key=None):
+    return BusRenewal(argparse.Namespace(connect=ENDPOINT, key=key, config=""))
+
+
+def test_a_router_that_hangs_is_waited_for():
+    with bus():
+        watch, session = renewal(), Cut()
+        assert not watch.due(session, 0)
+        session.connected = False
+        assert not any(watch.due(session, k * GONE) or watch.final(session, k * GONE + CHECK_NS) for k in range(1, 9))
+
+
+@pytest.mark.parametrize("users", [("people",), ()], ids=["passwords", "open"])
+def test_the_next_run_of_a_bus_needs_a_new_session(users):
+    with bus(users):
+        watch, session = renewal(), Cut()
+        assert not watch.due(session, 0)
+    session.connected = False
+    assert not watch.due(session, GONE), "no router is there"
+    with bus(users):
+        assert watch.due(session, 2 * GONE)
+        assert not watch.due(session, 2 * GONE + 1), "the folder is not read more often"
+        session.connected = True
+        assert not watch.due(session, 3 * GONE), "zenoh has reconnected by itself"
+        session.connected = False
+        assert not watch.due(session, 3 * GONE + CHECK_NS), "a moment ago it was"
+
+
+def test_a_key_outlives_the_bus():
+    watch, session = renewal(key="tailor-keys/people"), Cut()
+    assert not watch.due(session, 0)
+    session.connected = False
+    with bus():
+        assert not watch.due(session, GONE)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "final"),
+    [(("people",), ("people",), True), (("people",), (), True), ((), ("people",), True), ((), (), False)],
+)
+def test_a_session_ends_for_good_with_its_passwords_and_one_of_an_open_bus_does_not(before, after, final):
+    with bus(before):
+        watch, session = renewal(), Cut()
+        assert not watch.final(session, 0)
+    session.connected = False
+    with bus(after):
+        assert watch.final(session, GONE) == final
+
+
+def test_a_loop_never_knocks_at_a_bus_that_hangs(monkeypatch):
     """Knocks that nobody answers fill a queue, and then the next one waits: for seconds, in the loop of a driver."""
-    _, renewal, now_ns = cut_off
     knocks = []
     monkeypatch.setattr(RunFolder, "running", knocks.append)
-    renewal.final(now_ns)
+    with bus():
+        watch, session = renewal(), Cut(connected=False)
+        assert not any(watch.final(session, k * GONE) for k in range(3))
     assert knocks == []
-
-
-def test_a_session_is_cut_off_for_good_by_other_passwords(cut_off):
-    folder, renewal, now_ns = cut_off
-    folder.users_file.write_text("observer:another")
-    assert renewal.final(now_ns)

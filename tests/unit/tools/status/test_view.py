@@ -124,6 +124,27 @@ def test_what_a_driver_confirmed_before_it_fell_silent_is_not_shown_as_its_mode(
     assert "NOT CONFIRMED: the bus is lost" in key.line(feed.picture(), keyboard=True).plain
 
 
+def test_a_press_that_no_bus_has_heard_is_repeated_once_when_it_is_back():
+    button = SlowButton()
+    button.released.set()
+    key, presses = StopKey(button), 0
+    for connected, keys, expected in (
+        (True, b"s", 1),
+        (True, b"", 1),
+        (False, b"", 1),
+        (False, b"s", 2),
+        (False, b"x", 2),
+        (True, b"", 3),
+        (True, b"", 3),
+    ):
+        button.connected = connected
+        key.poll(keys)
+        key.finish()
+        while button.begun.acquire(blocking=False):
+            presses += 1
+        assert presses == expected
+
+
 def test_a_topic_that_is_published_on_change_has_no_rate():
     feed = Feed()
     for _ in range(3):
