@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         notifier.ready()
         _record(recorder, bus, stop, notifier, quiet=arguments.quiet)
         notifier.stopping()
-    health = recorder.close()
+        health = recorder.close()  # before the session, which takes ten seconds to close while its router hangs
     if arguments.json:
         print(json.dumps(_json_value(health)), flush=True)
     elif not arguments.quiet or health.drops or health.unwritten or health.mixed or health.disk_error:
