@@ -1,0 +1,54 @@
+"""The live page while a bus comes back: its pages keep the last run, marked as past, until the next one is heard."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from contextlib import ExitStack, contextmanager, suppress
+
+import pytest
+
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.stopping import Stop
+from tailor.schemas.errors import UsageError
+from tailor.tools.viewer.live import live_run
+from tailor.tools.viewer.live.live_run import LiveRun
+from tailor.tools.viewer.timeline import Event
+from tests.unit.tools.viewer.test_view_live import tick
+
+FLAGS = argparse.Namespace(connect="tcp/127.0.0.1:7999", key=None, config="", robot="", sender="", no_models=True)
+PAST, BEGINS = [[0.0, "tick", {"work": 1.0}]], []
+
+
+class Session:
+    connected = True
+
+    def subscribe_all(self, pattern):
+        return IngestQueue(), self
+
+    def undeclare(self):
+        pass
+
+
+@pytest.mark.parametrize("refused", ["people", "observer", ""])
+def test_pages_begin_anew_only_once_the_next_run_is_listened_to(monkeypatch, refused):
+    @contextmanager
+    def open_bus(arguments, role):
+        if role == refused:
+            raise UsageError("no router responds")
+        yield Session()
+
+    monkeypatch.setattr(live_run, "open_bus", open_bus)
+    stop = Stop()
+    stop.requested = True
+    run = LiveRun(FLAGS, stop)
+    monkeypatch.setattr(run._button, "of", lambda session: ExitStack())
+    run._broadcast.publish([tick(0.0)])
+    with run._broadcast.subscribe() as page, ExitStack() as sessions:
+        with suppress(UsageError):
+            run._open_again(sessions, button=True)
+        assert page.lost is (not refused)
+        assert json.loads(page.next(0)) == PAST
+        assert json.loads(page.next(0)) == [Event(0.0, "now", {"bus": False}).json_value()]
+    with run._broadcast.subscribe() as page:
+        assert json.loads(page.next(0)) == (PAST if refused else BEGINS)
