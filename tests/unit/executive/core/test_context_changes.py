@@ -61,6 +61,15 @@ class ShortRunUp:
         return np.where((arguments[:, 1] > 0.0) & (arguments[:, 0] > -0.05), 0.8, 0.999)
 
 
+class RiskyAhead:
+    """Success near one, unless a wall stands in the way: then probable wherever the robot starts."""
+
+    card = {"sha256": "toy"}
+
+    def probability(self, arguments):
+        return np.where(arguments[:, 3] < 30.0, 0.8, 0.999)
+
+
 class WalledLine(LineDomain):
     """The toy robot that believes walls: as many as odometry has radians, at odometry's y."""
 
@@ -177,6 +186,14 @@ def test_robot_that_is_too_fast_for_its_models_brakes_before_it_drives_around_an
     last = published(ticks, Subgoals)[-1]
     assert last[1].actions[0].asserted is not too_fast
     assert commands[at + 1].v == 0 if too_fast else commands[at + 1].v < 0
+
+
+def test_robot_that_is_too_fast_does_not_brake_for_a_decision_without_a_subgoal(monkeypatch):
+    monkeypatch.setattr(adoption, "begins_too_fast", lambda sequence: True)
+    ticks = run([(1, 40.0)] * 6 + [(1, 9.0)] * 3, WaryLine(), RiskyAhead())
+    assert ticks[-1][0] > 1
+    assert not published(ticks, ActionFinished)
+    assert all(message.v > 0 for tick, message in published(ticks, VelocityCommand) if tick > 5)
 
 
 def test_the_same_inputs_give_the_same_messages():
