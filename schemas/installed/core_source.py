@@ -27,7 +27,7 @@ def core_source(domain: str) -> dict[str, str]:
     digests: dict[str, hashlib._Hash] = {}
     for folder, name, path in sorted(set(_files(domain))):
         digest = digests.setdefault(folder, hashlib.sha256())
-        digest.update(f"{name}\0".encode() + path.read_bytes() + b"\0")
+        digest.update(f"{name}\0".encode() + _content(path) + b"\0")
     return {folder: digest.hexdigest()[:SHOWN_DIGITS] for folder, digest in digests.items()}
 
 
@@ -51,6 +51,14 @@ def _own(module: str) -> Path | None:
         return None
     path = Path(found.origin).resolve()
     return path.parent if found.parent else path
+
+
+def _content(path: Path) -> bytes:
+    """Bytes of a file; none of one that this user may not read, or that has just gone: no start fails for it."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
 
 
 def _sources(start: Path) -> Iterator[Path]:

@@ -15,17 +15,20 @@ def source_entry(folders: dict[str, str]) -> dict[str, Any]:
     return {"version": __version__, "folders": folders}
 
 
-def source_contrast(recorded: Any, today: dict[str, str]) -> str:
+def source_contrast(recorded: Any, today: dict[str, str], same_kind: bool = True) -> str:
     """What lies between the source of a recording and today's, in a line.
 
     Args:
       recorded: Entry `source` of its provenance, from a file; None or anything else: unknown.
       today: Hashes of today's folders.
+      same_kind: Whether the recording platform computes as this one does.
     """
     folders = recorded.get("folders") if isinstance(recorded, dict) else None
     if not isinstance(folders, dict):
         return UNSTATED
     other = [name for name in sorted({*folders, *today}, key=str) if folders.get(name) != today.get(name)]
+    if not other and not same_kind:
+        return "recorded by this very source, on a platform that rounds otherwise: a choice between equals may differ"
     if not other:
         return "recorded by this very source: equal inputs gave other outputs, which is a fault"
     version, folders_shown = str(recorded.get("version")), ", ".join(map(str, other))

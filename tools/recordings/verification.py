@@ -75,9 +75,8 @@ def verify(
       UsageError: The recording lacks a tick or an input, and, if `partly`, there is none before it.
     """
     here, there = platform_fingerprint(), run.provenance.get("machine", {})
-    comparison = RunComparison(
-        run, context.domain.robot, same_kind(there, here), same_products(there, here), proofs=proofs
-    )
+    kin = same_kind(there, here)
+    comparison = RunComparison(run, context.domain.robot, kin, same_products(there, here), proofs=proofs)
     with gc_frozen():  # as live
         began_s = time.perf_counter()
         used = context if proofs else without_proofs(context)
@@ -93,7 +92,7 @@ def verify(
         runs.left_out_text(),
         took_s,
         ends,
-        source_contrast(run.provenance.get("source"), core_source(context.domain.name)) if difference else "",
+        source_contrast(run.provenance.get("source"), core_source(context.domain.name), kin) if difference else "",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -21,7 +22,14 @@ def test_a_recording_that_states_no_source_is_not_guessed_at(recorded):
 
 
 def test_a_difference_under_the_same_source_is_a_fault():
-    assert "by this very source" in source_contrast(source_entry(TODAY), TODAY)
+    assert source_contrast(source_entry(TODAY), TODAY).endswith("which is a fault")
+
+
+def test_a_difference_on_a_platform_that_rounds_otherwise_need_not_be_one():
+    text = source_contrast(source_entry(TODAY), TODAY, same_kind=False)
+    assert "by this very source" in text
+    assert "fault" not in text
+    assert "another executive/core" in source_contrast(source_entry({**TODAY, "executive/core": "cc"}), TODAY, False)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +78,19 @@ def test_what_an_editor_leaves_beside_a_file_hinders_no_start(copy):
     before = core_source("soccer")
     (copy / "executive" / "core" / ".#modes.py").symlink_to("somebody@elsewhere")
     assert core_source("soccer") == before
+
+
+def test_a_file_that_may_not_be_read_hinders_no_start(copy, monkeypatch):
+    before, read = core_source("soccer"), Path.read_bytes
+
+    def refusing(path):
+        if path.name == "modes.py":
+            raise PermissionError
+        return read(path)
+
+    monkeypatch.setattr(Path, "read_bytes", refusing)
+    after = core_source("soccer")
+    assert [name for name in before if before[name] != after[name]] == ["executive/core"]
 
 
 def test_of_a_domain_in_a_module_alone_only_that_module_counts(tmp_path, monkeypatch):
