@@ -111,8 +111,10 @@ class Run {
       if (row.index < 0) return;
       const next = started[position + 1]?.at ?? Infinity;
       const ended = this.between("finished", row.at - 0.3, next + 0.3).find((end) => end.index === row.index) ?? null;
-      const first = this.all("belief")[this.count("belief", row.at - 1e-9)];
-      const begin = first ? first.at - first.elapsed : row.at;
+      const reported = this.all("belief")[this.count("belief", row.at - 1e-9)];
+      const first = reported?.at < (ended?.at ?? next) ? reported : null; // else those of this action are forgotten
+      const reached = ended ? ended.at - ended.actual : row.at;
+      const begin = first ? first.at - first.elapsed : reached;
       const until = ended ? begin + ended.actual : Math.min(next, this.end);
       actions.push({
         index: row.index,

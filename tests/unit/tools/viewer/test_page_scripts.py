@@ -1,0 +1,41 @@
+"""Scripts of the page without a browser, in Node.js: what a live run of more than ten minutes keeps stays true."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from importlib import resources
+
+import pytest
+
+NODE = shutil.which("node")
+EACH_S, ALL_S = 20, 1500
+LIVE = """
+const run = new Run();
+let began = 0, index = -1;
+for (let tick = 0; tick < 10 * %d; tick++) {
+  const at = tick / 10;
+  if (at >= %d * (index + 1)) {
+    if (index >= 0) run.add([at, "finished", {index, actual: at - began, predicted: 19}]);
+    [began, index] = [at, index + 1];
+    run.add([at, "action", {index, action: "go"}]);
+  }
+  run.add([at, "belief", {elapsed: at - began, predicted: 18}]);
+  run.forget();
+}
+const actions = run.actions().map(({begin, until, predicted}) => [begin, until, predicted]);
+console.log(JSON.stringify({actions, beliefs: run.all("belief").length}));
+"""
+
+
+@pytest.mark.skipif(NODE is None, reason="no Node.js here: install Debian's package nodejs")
+def test_actions_whose_samples_a_live_page_has_forgotten_stand_where_they_were() -> None:
+    assets = resources.files("tailor.tools.viewer") / "assets"
+    scripts = [(assets / name).read_text("utf-8") for name in ("elements.js", "columns.js", "run.js")]
+    script = "\n".join([*scripts, LIVE % (ALL_S, EACH_S)])
+    found = json.loads(subprocess.run([NODE, "-"], input=script, capture_output=True, text=True, check=True).stdout)
+    assert found["beliefs"] < 0.5 * 10 * ALL_S, "most samples are forgotten"
+    *ended, running = found["actions"]
+    assert running == pytest.approx([ALL_S - EACH_S, ALL_S, 18], abs=0.2)
+    assert ended == [pytest.approx([EACH_S * k, EACH_S * (k + 1), 19], abs=0.2) for k in range(ALL_S // EACH_S - 1)]
