@@ -74,6 +74,12 @@ def test_a_changed_file_changes_its_folder_and_no_other(copy, file):
     assert [name for name in before if before[name] != after[name]] == ["/".join(file.split("/")[:2])]
 
 
+def test_a_renamed_file_changes_its_folder(copy):
+    before = core_source("soccer")
+    (copy / "executive" / "core" / "modes.py").rename(copy / "executive" / "core" / "modes_.py")
+    assert core_source("soccer")["executive/core"] != before["executive/core"]
+
+
 def test_what_an_editor_leaves_beside_a_file_hinders_no_start(copy):
     before = core_source("soccer")
     (copy / "executive" / "core" / ".#modes.py").symlink_to("somebody@elsewhere")

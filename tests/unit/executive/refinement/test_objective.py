@@ -45,6 +45,13 @@ def test_cost_is_mean_plus_k_standard_deviations_of_every_action():
         assert value == pytest.approx(expected[0])
 
 
+def test_equal_starts_count_once():
+    given = replace(approach_dribble(), starts=({1: 0.5},))
+    found = given.starting_from([{2: 0.1}, {2: 0.2}, {2: 0.1}])
+    assert found.starts == ({1: 0.5, 2: 0.1}, {1: 0.5, 2: 0.2})
+    assert given.starting_from([]) is given
+
+
 def test_horizon_one_is_the_first_action_alone():
     cost = objective(exact(horizon=1, k_std=0.0))(CANDIDATES)
     first = MODELS.durations["goToPose/duration"].predict(arguments(*CANDIDATES[1])[0])[0]

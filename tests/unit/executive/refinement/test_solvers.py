@@ -166,3 +166,22 @@ def test_search_ends_when_improvements_are_too_small():
     eager.advance(CheckBudget(10_000))
     assert eager.finished
     assert eager.checks < 15
+
+
+def test_the_elite_are_the_best_valid_half_of_a_population_and_none_before_the_first_check():
+    def half_valid(x):
+        return np.where(x[:, 0] > 0.0, de_jong(x), np.inf)
+
+    objective = Function(cube(5.0, 2), half_valid)
+    search = DifferentialEvolution(objective, np.random.default_rng(0), np.empty((0, 2)), Limits(2, 2))
+    assert search.elite.shape == (0, 2)
+    search.advance(CheckBudget(1))
+    costs = half_valid(search.elite)
+    assert 2 < len(costs) <= 12
+    assert np.isfinite(costs).all()
+    assert (np.diff(costs) >= 0.0).all()
+    assert costs[0] == search.value
+    never = Function(cube(5.0, 2), lambda x: np.full(len(x), np.inf))
+    search = DifferentialEvolution(never, np.random.default_rng(0), np.empty((0, 2)), Limits(2, 2))
+    search.advance(CheckBudget(1))
+    assert search.elite.shape == (0, 2)

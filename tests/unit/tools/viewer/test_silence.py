@@ -32,3 +32,10 @@ def test_without_any_message_time_alone_reveals_the_silence_of_both() -> None:
 
 def test_what_was_never_heard_is_not_silent() -> None:
     assert RunTimeline().silences(99.0) == []
+
+
+def test_the_driver_of_another_robot_neither_speaks_nor_falls_silent_for_this_one() -> None:
+    timeline = RunTimeline(robot="agilo")
+    assert silent_events(timeline, (0.0, "agilo/driver", DRIVER), (0.4, "b21/driver", DRIVER)) == []
+    assert [event.fields for event in timeline.silences(0.6)] == [{"driver": 0.0}]
+    assert silent_events(RunTimeline(robot="agilo"), (0.0, "b21/driver", DRIVER), (9.0, "exec/status", STATUS)) == []

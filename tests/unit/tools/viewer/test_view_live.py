@@ -85,6 +85,15 @@ def test_old_ticks_are_dropped_and_old_events_are_not() -> None:
     assert kept[-1][0] == 199
 
 
+def test_the_run_after_an_hour_drops_old_ticks_too() -> None:
+    broadcast = EventBroadcast(keep_s=10)
+    broadcast.publish([tick(3600.0)])
+    broadcast.restart()
+    broadcast.publish([tick(k) for k in range(200)])
+    with broadcast.subscribe() as page:
+        assert len(json.loads(page.next(0))) <= 80
+
+
 def test_old_alternatives_are_dropped_but_the_newest() -> None:
     broadcast = EventBroadcast(keep_s=10)
     for k in range(3):
