@@ -86,13 +86,19 @@ class LiveView:
                 if renewal.due(session, now_ns):
                     return False
                 if now_ns - drawn_ns >= DRAW_NS:
-                    drawn_ns = self._read_ns = now_ns
-                    watcher.poll(now_ns)
+                    drawn_ns = now_ns
+                    self._read(watcher, now_ns)
                     self._draw(keyboard, live)
                 time.sleep(KEY_S)
+            self._key.finish()
+            self._read(watcher, time.monotonic_ns())  # what drivers confirmed after a last press
         finally:
             subscription.undeclare()
         return True
+
+    def _read(self, watcher: Watcher, now_ns: int) -> None:
+        self._read_ns = now_ns
+        watcher.poll(now_ns)
 
     def _draw(self, keyboard: Keyboard, live: Live) -> None:
         picture = self._model.picture(time.monotonic_ns())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from contextlib import contextmanager
 
 import pytest
@@ -13,6 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli import bus_renewal
 from tailor.tools.status import live_view
 from tailor.tools.status.live_view import LiveView
+from tailor.tools.status.stop_key import StopKey
 
 BUS = argparse.Namespace(connect="tcp/127.0.0.1:7999", key=None, config="")
 
@@ -48,7 +50,9 @@ class Button:
         self.connected = False
 
     def press(self):
-        self.stops += self.connected
+        heard = self.connected
+        time.sleep(0.05)  # until the drivers confirm
+        self.stops += heard
 
 
 class Session:
@@ -103,6 +107,14 @@ def test_a_stop_key_that_is_pressed_while_the_bus_is_opened_again_stops_its_next
 def test_a_view_without_a_press_stops_nothing_after_the_bus_was_opened_again(viewed):
     button, _ = viewed([b"", b"", b"x", b""], opening=(True, False, True), due=(True,))
     assert button.stops == 0
+
+
+def test_the_last_state_is_read_after_a_last_press_was_confirmed(viewed, monkeypatch):
+    confirmed, button = [], {}
+    monkeypatch.setattr(live_view, "StopKey", lambda given: button.setdefault("key", StopKey(given)))
+    monkeypatch.setattr(live_view.Watcher, "poll", lambda *_: confirmed.append(button["key"]._button.stops))
+    viewed([b"", b"s"])
+    assert (confirmed[0], confirmed[-1]) == (0, 1)
 
 
 def test_the_last_state_is_that_of_the_moment_up_to_which_the_bus_was_read(viewed, monkeypatch):
