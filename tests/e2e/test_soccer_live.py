@@ -113,6 +113,14 @@ def test_verify_names_the_first_tick_that_differs(recording):
 
 
 @pytest.mark.xdist_group("live")
+def test_a_live_run_states_the_source_of_its_executive(recording):
+    from tailor.schemas.installed.core_source import core_source
+    from tailor.tools.recordings.recorded_run import RecordedRuns
+
+    assert RecordedRuns(recording).runs[0].provenance["source"]["folders"] == core_source("soccer")
+
+
+@pytest.mark.xdist_group("live")
 def test_no_tick_is_missed(measured_run, tmp_path):
     from tailor.tools.recordings.recorded_run import RecordedRuns
 
