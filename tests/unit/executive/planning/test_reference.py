@@ -104,7 +104,7 @@ IPC = {key: row for key, row in reference(SHARED, "22-ipc3").items() if key[0].s
 # within the first 1000 plans only the first flaw order is used: these are its counts
 FIRST_ROUND = {key: row for key, row in IPC.items() if int(row["plans_generated"]) < 1000}
 LATER_ROUNDS = {key: row for key, row in IPC.items() if key not in FIRST_ROUND}
-# The cause is not known; docs/planning.md lists what it is not.
+# The cause is not known; docs/tried.md lists what it is not.
 NEARLY = {("ipc/rovers-strips", "p07")}
 given = pytest.mark.skipif(not IPC, reason="../shared/pddl is absent: no competition problems to compare with")
 
