@@ -20,7 +20,7 @@ REPEATS = 8  # runs of the same task with other noise
 # Durations lie nearer to the median of their own eight runs than to the true one: by 1.100 if their errors are normal,
 # by 1.074 if Laplacian (200 000 draws of each).
 OF_OWN_MEDIAN = 1.087
-REPEATED_TASKS = 300
+REPEATED_TASKS = 1000
 RESAMPLES = 2000
 
 
