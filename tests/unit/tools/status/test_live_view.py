@@ -8,13 +8,13 @@ from contextlib import contextmanager
 
 import pytest
 
-from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli import bus_renewal
 from tailor.tools.status import live_view
 from tailor.tools.status.live_view import LiveView
 from tailor.tools.status.stop_key import StopKey
+from tests.support.stand_ins.silent_session import SilentSession
 
 BUS = argparse.Namespace(connect="tcp/127.0.0.1:7999", key=None, config="")
 
@@ -55,16 +55,6 @@ class Button:
         self.stops += heard
 
 
-class Session:
-    connected = True
-
-    def subscribe_all(self, pattern):
-        return IngestQueue(), self
-
-    def undeclare(self):
-        pass
-
-
 @pytest.fixture
 def viewed(monkeypatch):
     """viewed(keys, opening, due): the button and the last state of a view whose sessions open or not, and are due."""
@@ -76,7 +66,7 @@ def viewed(monkeypatch):
         def open_bus(arguments, role):
             if role == "observer" and not next(openings):
                 raise UsageError("no router responds")
-            yield Session()
+            yield SilentSession()
 
         class Renewal:
             def __init__(self, arguments):

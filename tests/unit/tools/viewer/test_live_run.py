@@ -8,26 +8,16 @@ from contextlib import ExitStack, contextmanager, suppress
 
 import pytest
 
-from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.live import live_run
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.timeline import Event
+from tests.support.stand_ins.silent_session import SilentSession
 from tests.unit.tools.viewer.test_view_live import tick
 
 FLAGS = argparse.Namespace(connect="tcp/127.0.0.1:7999", key=None, config="", robot="", sender="", no_models=True)
 PAST, BEGINS = [[0.0, "tick", {"work": 1.0}]], []
-
-
-class Session:
-    connected = True
-
-    def subscribe_all(self, pattern):
-        return IngestQueue(), self
-
-    def undeclare(self):
-        pass
 
 
 @pytest.mark.parametrize("refused", ["people", "observer", ""])
@@ -36,7 +26,7 @@ def test_pages_begin_anew_only_once_the_next_run_is_listened_to(monkeypatch, ref
     def open_bus(arguments, role):
         if role == refused:
             raise UsageError("no router responds")
-        yield Session()
+        yield SilentSession()
 
     monkeypatch.setattr(live_run, "open_bus", open_bus)
     stop = Stop()
