@@ -28,8 +28,8 @@ from tailor.tools.evaluations.seeds import seeds_of
 Row = dict[str, Any]
 REMARKS = (
     "MAE: of the fresh episodes that finished, 95 % interval over episodes; bias: predicted minus observed; noise "
-    "floor: repeated runs of the first 1000 of these tasks with other noise; over floor: the error on the same tasks as "
-    "a multiple of it, bootstrap over tasks; failures: predicted and observed, of all fresh episodes; "
+    "floor: repeated runs of the first 1000 of these tasks with other noise; over floor: the error on the same tasks "
+    "as a multiple of it, bootstrap over tasks; failures: predicted and observed, of all fresh episodes; "
     "coverage: share of durations within the interval that is to hold 90 %, and in thirds of predicted spread",
 )
 
