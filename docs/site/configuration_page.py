@@ -14,8 +14,9 @@ from tailor.tools.cli.deployment import Deployment
 
 HEAD = """# Configuration
 
-A deployment is one TOML file, `--config robot.toml`, of `tailor up`, `executive` and `units`. Every key has a
-default; an unknown key is an error. Flags of a command win over the file. This page is generated from the code.
+A deployment is one TOML file, `--config robot.toml`, for every command on the bus: `tailor up`, `executive`, `sim` and
+`units` read all of it, the others `[bus]` alone. Every key has a default; an unknown key is an error. Flags of a
+command win over the file. This page is generated from the code.
 """
 
 
