@@ -19,6 +19,8 @@ A deployment is one TOML file, `--config robot.toml`, for every command on the b
 command win over the file. This page is generated from the code.
 """
 
+REFUSED = {"executive.external"}  # by `read_deployment`: its keys stand in another table
+
 
 def configuration_page() -> str:
     """Markdown with one table for each table of a deployment file."""
@@ -39,7 +41,7 @@ def _tables(cls: type, value: Any, name: str) -> list[str]:
     summary = (inspect.getdoc(cls) or "").split("\n\n")[0]
     head = [f"\n## {title}\n", summary, "", "| key | type | default | meaning |", "|---|---|---|---|"]
     own = [*head, *plain] if plain else []
-    return own + [line for each in nested for line in _tables(*each)]
+    return own + [line for each in nested if each[2] not in REFUSED for line in _tables(*each)]
 
 
 def _kind(hint: Any) -> str:

@@ -8,6 +8,7 @@ from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.deliberation.context import PlannerCommand, Settings
 from tailor.runtime.planners.named import DURATIVE_HEAD_START, KAIROS, check_engine, kairos_installed
 from tailor.runtime.processes.planner_process import split_command
+from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
 from tailor.tools.cli.bus_settings import BusSettings
@@ -32,7 +33,10 @@ def read_deployment(path: str) -> Deployment:
     """
     if not path:
         return Deployment()
-    return from_table(Deployment, read_toml(path, "a deployment file"), path)
+    deployment = from_table(Deployment, read_toml(path, "a deployment file"), path)
+    if deployment.executive.external != PlannerCommand():  # there for recordings, which hold the executive's settings
+        raise UsageError(f"{path}: table executive.external, expected its keys in the table planner")
+    return deployment
 
 
 def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
@@ -44,11 +48,14 @@ def executive_config(domain: str, deployment: Deployment) -> ExecutiveConfig:
     from tailor.executive import domains
 
     scenario = deployment.scenario or domains.scenarios(domain)[0]
-    settings, planner = deployment.executive, _external(deployment.planner, domain)
-    if deployment.planner.costs != "steps":
-        settings = replace(settings, plan_costs=deployment.planner.costs)
-    if deployment.planner.engine != "kairos":
-        settings = replace(settings, planner=replace(settings.planner, engine=deployment.planner.engine))
+    settings, planner = deployment.executive, deployment.planner
+    if planner.engine == "auto":  # the file may name one beside the search's other settings instead
+        planner = replace(planner, engine=settings.planner.engine)
+    if planner.costs != "steps":
+        settings = replace(settings, plan_costs=planner.costs)
+    if planner.engine != "kairos":
+        settings = replace(settings, planner=replace(settings.planner, engine=planner.engine))
+    planner = _external(planner, domain)
     if planner.command:
         split_command(planner.command)
         check_engine(planner.command)

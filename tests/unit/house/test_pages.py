@@ -102,6 +102,8 @@ def test_the_generated_pages_hold_every_command_and_every_setting(monkeypatch: p
     page = importlib.import_module("configuration_page").configuration_page()
     assert "## `[executive.refinement]`" in page
     assert "| `horizon` | `int` | `2` | actions optimised together" in page
+    assert "## `[planner]`" in page
+    assert "## `[executive.external]`" not in page, "read_deployment refuses it"
 
 
 @pytest.mark.slow

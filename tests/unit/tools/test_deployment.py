@@ -52,6 +52,24 @@ def test_kairos_by_name_is_an_external_planner(tmp_path, monkeypatch):
         config(tmp_path, '[planner]\nengine = "kairos"\ncommand = "vhpop"\n')
 
 
+@pytest.mark.parametrize("table", ["planner", "executive.planner"])
+def test_the_engine_of_the_search_stands_beside_its_other_settings_or_those_of_planners(tmp_path, monkeypatch, table):
+    monkeypatch.setattr("tailor.runtime.planners.named.find_spec", lambda name: object())
+    monkeypatch.setattr(domains, "load", lambda name: SimpleNamespace(pddl="(:durative-action"))
+    settings = config(tmp_path, f'[{table}]\nengine = "pocl"\n').settings
+    assert (settings.planner.engine, settings.external.command) == ("pocl", "")
+
+
+def test_of_two_engines_that_of_planners_counts(tmp_path):
+    text = '[planner]\nengine = "forward"\n[executive.planner]\nengine = "pocl"\n'
+    assert config(tmp_path, text).settings.planner.engine == "forward"
+
+
+def test_an_external_planner_in_the_table_of_the_executive_is_refused(tmp_path):
+    with pytest.raises(UsageError, match=r"d.toml: table executive.external, expected its keys in the table planner"):
+        config(tmp_path, '[executive.external]\ncommand = "no-such-vhpop"\n')
+
+
 def test_kairos_that_is_not_installed_is_an_error_with_the_pip_command(tmp_path, monkeypatch):
     monkeypatch.setattr("tailor.runtime.planners.named.find_spec", lambda name: None)
     with pytest.raises(UsageError, match=r"pip install 'tailor\[kairos\]'"):
