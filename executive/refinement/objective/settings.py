@@ -22,7 +22,7 @@ SolverName = Literal["auto", "chain", "genetic", "differential"]
 
 @dataclass(frozen=True, slots=True)
 class RefinementSettings:
-    """Settings of subgoal assertion and refinement, table `[refinement]` of a deployment.
+    """Settings of subgoal assertion and refinement, table `[executive.refinement]` of a deployment.
 
     `arrival_spread` is the standard deviation of the robot's arrival at a subgoal by quantity, learned from episodes;
     empty: exact arrival. `risk_cost_s` is the price of a failed action: the objective adds it times the predicted
@@ -38,8 +38,8 @@ class RefinementSettings:
     p_fail_settle: float = 0.5  # if no start keeps p_fail_max, the least risk is accepted up to this
     risk_cost_s: float = 6.0  # seconds that a failure costs; on training seeds 3 hits more balls and 10 gains less
     gain_min_s: float = 0.0  # the greedy choice is kept for a smaller predicted gain
-    gain_k_std: float = 0.5  # and for one of so many standard deviations of the difference: of 400 training starts
-    # 5.0 % are slower at 0, 2.8 % at 0.5, 1.5 % at 1; the gain is 12.95, 12.5 and 12.0 %
+    gain_k_std: float = 0.5  # and for one of so many standard deviations of the difference: when it was chosen
+    # 5.0 % of 400 training starts were slower at 0, 2.8 % at 0.5, 1.5 % at 1; the gain was 12.95, 12.5 and 12.0 %
     arrival_spread: tuple[tuple[str, float], ...] = ARRIVAL_SPREAD
     energy_weight: float = 0.0  # seconds for a joule (paper 8); needs "<action>/energy" models
     batch: int = 256  # model inputs in one check of the chain solver, about 0.1 ms with ten bagged trees
