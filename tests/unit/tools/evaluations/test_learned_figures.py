@@ -9,7 +9,7 @@ from tailor.models.episodes.examples import Examples
 from tailor.models.features.spaces import feature_space
 from tailor.models.runtime import load_model
 from tailor.tools.figures.learned_models.pictures import _predicted_observed, flat_from, plt
-from tailor.tools.figures.learned_models.regions import JOINTS, POSES, region_of, swept
+from tailor.tools.figures.learned_models.regions import GEARS, JOINTS, POSES, region_of, swept
 from tailor.tools.main import main
 
 
@@ -57,7 +57,9 @@ def test_the_sweep_turns_the_angle_that_it_names_and_nothing_else(region) -> Non
 
 
 def test_arguments_that_nobody_drew_have_no_region() -> None:
-    assert region_of(load_model("powercube/reach/duration").card) is JOINTS
+    arm = load_model("powercube/reach/duration").card
+    assert region_of(arm) is GEARS
+    assert region_of({"arguments": arm["arguments"][:8]}) is JOINTS
     assert region_of(load_model("agilo/goToPose/duration").card) is POSES
     assert region_of({"arguments": [{"name": "force"}]}) is None
 
