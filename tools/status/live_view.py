@@ -52,9 +52,9 @@ class LiveView:
                 while not self._watch(session, renewal, keyboard, live):
                     opened = opened_anew(sessions, self._open, lambda: self._is_to_end(keyboard, live))
                     if opened is None:
+                        self._key.finish()
                         break
                     renewal, session = opened
-                self._key.finish()
             return self._model.picture(self._read_ns)  # not later: nobody is silent since nothing is read
 
     def _open(self, sessions: ExitStack) -> tuple[BusRenewal, Session]:
