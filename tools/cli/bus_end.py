@@ -13,7 +13,6 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UnreachableError
 from tailor.tools.cli.bus_renewal import BusRenewal
-from tailor.tools.cli.endpoint import bus_settings
 
 
 class BusEnd:
@@ -21,7 +20,6 @@ class BusEnd:
 
     def __init__(self, arguments: argparse.Namespace, stop: Stop) -> None:
         """`arguments`: parsed flags of `configure_bus`; `stop`: request to end."""
-        self._endpoint = bus_settings(arguments).endpoint
         self._renewal = BusRenewal(arguments)
         self._stop = stop
         self._cut_off = False
@@ -39,6 +37,6 @@ class BusEnd:
         """
         if self._cut_off:
             raise UnreachableError(
-                f"bus endpoint {self._endpoint}: the bus was started anew, with other passwords; "
+                f"bus endpoint {self._renewal.endpoint}: the bus was started anew, with other passwords; "
                 "start this command again as well"
             )

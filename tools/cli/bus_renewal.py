@@ -26,9 +26,10 @@ class BusRenewal:
     def __init__(self, arguments: argparse.Namespace) -> None:
         """`arguments`: parsed flags of `configure_bus`."""
         settings = bus_settings(arguments)
+        self.endpoint = settings.endpoint
         self._folder = None if settings.key else run_folder(settings.endpoint)  # a key outlives the bus
         self._run = None if self._folder is None else self._folder.run
-        self._passwords = self._present_passwords()
+        self._secured = self._folder is not None and self._folder.secured
         self._connected_ns: int | None = None
         self._checked_ns: int | None = None
 
@@ -51,14 +52,10 @@ class BusRenewal:
         return self._folder.run != self._run and self._folder.running()
 
     def final(self, session: Session, now_ns: int) -> bool:
-        """As `due`, and the passwords are others: this session never connects again, as that of an open bus does."""
-        return self.due(session, now_ns) and self._present_passwords() != self._passwords
-
-    def _present_passwords(self) -> bytes:
-        try:
-            return b"" if self._folder is None else self._folder.users_file.read_bytes()
-        except OSError:  # an open bus has none
-            return b""
+        """As `due`, and there are other passwords: this session never connects again, as that of an open bus does."""
+        if not self.due(session, now_ns) or self._folder is None:
+            return False
+        return self._secured or self._folder.secured  # each run makes new passwords
 
 
 def opened_anew(sessions: ExitStack, opened: Callable[[ExitStack], Opened], ended: Callable[[], bool]) -> Opened | None:
