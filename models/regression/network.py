@@ -37,7 +37,7 @@ class NetworkRegressor(RegressionModel):
       random_state: Seed of weights and batches.
     """
 
-    def __init__(self, networks: int = 4, width: int = 32, decay: float = 0.3, random_state: int = 0) -> None:
+    def __init__(self, networks: int = 4, width: int = 64, decay: float = 0.3, random_state: int = 0) -> None:
         self.networks = networks
         self.width = width
         self.decay = decay
