@@ -13,18 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
-from tailor.models.cards.card import (
-    KINDS,
-    MAX_MODEL_BYTES,
-    SUCCESS_KINDS,
-    UNITS,
-    Card,
-    card_path,
-    read_bytes,
-    read_card,
-    sha256_of,
-)
+from tailor.models.cards.card import KINDS, SUCCESS_KINDS, UNITS, Card, card_path
 from tailor.models.cards.checks import check_identity, check_place, check_ranges
+from tailor.models.cards.model_files import read_model
 from tailor.models.features.spaces import feature_spaces
 from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session
 from tailor.schemas.errors import UsageError
@@ -45,10 +36,7 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
       UsageError: The file or its card is missing or damaged, or they do not agree; the message names both values.
     """
     path = model if isinstance(model, Path) else _in_zoo(model, zoo or ZOO)
-    card = read_card(card_path(path))
-    content = read_bytes(path, MAX_MODEL_BYTES)
-    if sha256_of(content) != card["sha256"]:
-        raise UsageError(f"{path}: sha256 is {sha256_of(content)[:12]}…, expected {card['sha256'][:12]}… by its card")
+    content, card = read_model(path)
     session = _session(content, path)
     check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
     bounds = model_bounds(content, str(card["features"]), _number_of_features(card, path))

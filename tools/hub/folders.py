@@ -6,7 +6,9 @@ import shutil
 from pathlib import Path
 
 from tailor.models.cards.card import card_path
+from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.hub.checksums import CHECKSUMS, write_checksums
@@ -36,7 +38,8 @@ def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> No
         raise UsageError(f"{zoo / robot}: no action models, expected ACTION/duration.onnx (`tailor train` writes them)")
     cards = [load_model(model).card for model in models]
     files = [file.relative_to(zoo) for model in models for file in (model, card_path(model))]
-    _copy(zoo, files, folder)
+    for model in models:
+        replace_model(folder / model.relative_to(zoo), *read_model(model))
     (folder / README).write_text(model_card(robot, cards, licence or licence_of(robot)), encoding="utf-8")
     write_checksums(folder, files)
 

@@ -14,7 +14,9 @@ from pathlib import Path
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import card_path
 from tailor.models.cards.checks import check_ranges
+from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
@@ -135,18 +137,14 @@ def _check(model: Path) -> None:
 
 
 def _install(source: Path, models: list[Path], zoo: Path, robot: str, replace: bool) -> None:
-    """Move models with their cards into a zoo, file by file."""
+    """Put models with their cards into a zoo, pair by pair."""
     old = {path.relative_to(zoo) for path in (zoo / robot).glob("*/*.onnx")}
     _refuse([zoo / path for path in sorted(old) if not replace])
     for model in models:
-        (zoo / model).parent.mkdir(parents=True, exist_ok=True)
-        for file in (model, card_path(model)):
-            beside = zoo / file.with_name(f".{file.name}.pulled")
-            shutil.copyfile(source / file, beside)
-            beside.replace(zoo / file)
+        replace_model(zoo / model, *read_model(source / model))
     for model in old - set(models):
-        (zoo / model).unlink()
         card_path(zoo / model).unlink(missing_ok=True)
+        (zoo / model).unlink()  # last: a model without a card is found and removed by the next pull
 
 
 def _refuse(existing: list[Path]) -> None:

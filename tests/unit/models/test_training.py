@@ -9,7 +9,6 @@ from tailor.models import runtime
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.episodes.regression_targets import DURATION, ENERGY
 from tailor.models.export.publishing import Publication, publish
-from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.planar import projective
 from tailor.models.training import first_ticks, learners
 from tailor.models.training.first_ticks import best_n_i
@@ -25,20 +24,6 @@ def data_set(count: int, seed: int = 1) -> DataSet:
     made = standin.episodes(count, seed)
     episodes = tuple(Episode(k, t[0], t, d, ok, "" if ok else "ball") for k, (t, d, ok) in enumerate(made))
     return DataSet({"robot": "toy", "action": "goToPose", "arguments": ARGUMENTS}, episodes, "0" * 64)
-
-
-def test_a_model_that_cannot_be_written_whole_leaves_the_one_that_was_there(tmp_path, monkeypatch) -> None:
-    card = {"robot": "toy", "action": "goToPose", "kind": "duration"}
-    path = write_model(tmp_path, b"old", card)
-
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("tailor.models.export.zoo_writer.write_card", full)
-    with pytest.raises(OSError, match="No space"):
-        write_model(tmp_path, b"new", card)
-    assert path.read_bytes() == b"old"
-    assert sorted(file.name for file in path.parent.iterdir()) == ["duration.card.json", "duration.onnx"]
 
 
 @pytest.fixture(scope="module")

@@ -145,7 +145,8 @@ def _full(name: str, zoo: Path) -> list[str]:
 
 
 def _all(zoo: Path) -> list[str]:
-    names = sorted("/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in zoo.glob("*/*/*.card.json"))
+    files = (path for end in ("card.json", "onnx") for path in zoo.glob(f"*/*/*.{end}"))
+    names = sorted({"/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in files})
     if not names:
         raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` writes them)")
     return names

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 from tailor.executive import domains
+from tailor.models.cards.card import card_path
+from tailor.models.cards.model_files import read_model
+from tailor.models.export.zoo_writer import replace_model
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.making.making import Making
 
@@ -25,8 +27,10 @@ def check_complete(making: Making) -> None:
 
 def install(made: Path, zoo: Path, robot: str) -> None:
     """Replace a robot's models in a zoo by those just made; its recipe and other robots' models stay."""
-    shutil.copytree(made / robot, zoo / robot, dirs_exist_ok=True)
-    kept = {path.relative_to(made) for path in (made / robot).rglob("*")}
+    models = sorted((made / robot).glob("*/*.onnx"))
+    for model in models:
+        replace_model(zoo / model.relative_to(made), *read_model(model))
+    kept = {path.relative_to(made) for model in models for path in (model, card_path(model))}
     for path in [*(zoo / robot).glob("*/*.onnx"), *(zoo / robot).glob("*/*.card.json")]:
         if path.relative_to(zoo) not in kept:
             path.unlink()  # of an action or kind that has no model any more

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from tailor.models.cards.card import card_path, read_card
+from tailor.models.export.zoo_writer import replace_model
+from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.learning.gathering import choosing_models, manifests, policy_runs, random_episodes
@@ -118,21 +121,23 @@ def test_another_source_or_recipe_starts_anew_but_keeps_random_episodes(tmp_path
 
 
 def test_installing_replaces_all_models_of_the_robot_and_nothing_else(tmp_path: Path) -> None:
-    made, zoo = tmp_path / "made", tmp_path / "zoo"
+    made, zoo, shipped = tmp_path / "made", tmp_path / "zoo", ZOO / "powercube" / "reach" / "duration.onnx"
+    new = made / "a/go/duration.onnx"
+    replace_model(new, shipped.read_bytes(), read_card(card_path(shipped)))
     files = {
-        made / "a/go/duration.onnx": "new",
-        zoo / "a/go/duration.onnx": "old",
-        zoo / "a/go/success.onnx": "old",
-        zoo / "a/stop/energy.card.json": "old",
-        zoo / "a/recipe.toml": "kept",
-        zoo / "b/go/duration.onnx": "kept",
+        "a/go/duration.onnx": "old",
+        "a/go/success.onnx": "old",
+        "a/stop/energy.card.json": "old",
+        "a/recipe.toml": "kept",
+        "b/go/duration.onnx": "kept",
     }
-    for path, text in files.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
+    for name, text in files.items():
+        (zoo / name).parent.mkdir(parents=True, exist_ok=True)
+        (zoo / name).write_text(text)
     install(made, zoo, "a")
-    left = {path.relative_to(zoo).as_posix(): path.read_text() for path in zoo.rglob("*") if path.is_file()}
-    assert left == {"a/go/duration.onnx": "new", "a/recipe.toml": "kept", "b/go/duration.onnx": "kept"}
+    left = {path.relative_to(zoo).as_posix(): path.read_bytes() for path in zoo.rglob("*") if path.is_file()}
+    pair = {"a/go/duration.onnx": new.read_bytes(), "a/go/duration.card.json": card_path(new).read_bytes()}
+    assert left == {**pair, "a/recipe.toml": b"kept", "b/go/duration.onnx": b"kept"}
 
 
 REACH = "[[random]]\naction = 'reach'\nepisodes = 9\n"
