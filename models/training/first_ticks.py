@@ -13,6 +13,7 @@ from tailor.models.episodes.episodes import Episode
 from tailor.models.episodes.examples import Examples, folds
 from tailor.models.episodes.regression_targets import RegressionTarget
 from tailor.models.features.features import FeatureSpace
+from tailor.models.training.fitting import absolute_errors, fitted
 
 Array = NDArray[np.float64]
 
@@ -61,15 +62,8 @@ def _cross_validated_errors(
     space: FeatureSpace,
 ) -> Array:
     """Errors on the `first` rows of each part, (n,), of a copy of `learner` fitted to the `rows` of the other parts."""
-    fitted = (_fitted(learner, rows.of(np.setdiff1d(kept, part)), space) for part in parts)
-    return np.concatenate([_errors(each, first.of(part), space) for each, part in zip(fitted, parts, strict=True)])
-
-
-def _errors(learner: Any, rows: Examples, space: FeatureSpace) -> Array:
-    """Absolute errors, shape (n,)."""
-    errors: Array = np.abs(learner.predict(space(rows.arguments)) - rows.targets)
-    return errors
-
-
-def _fitted(learner: Any, rows: Examples, space: FeatureSpace) -> Any:
-    return clone(learner).fit(space(rows.arguments), rows.targets, groups=rows.groups)
+    errors = []
+    for part in parts:
+        copy = fitted(clone(learner), rows.of(np.setdiff1d(kept, part)), space)
+        errors.append(absolute_errors(copy, first.of(part), space))
+    return np.concatenate(errors)

@@ -22,6 +22,7 @@ from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
 from tailor.models.training.first_ticks import best_n_i
+from tailor.models.training.fitting import absolute_errors, fitted
 from tailor.schemas.errors import UsageError
 
 Array = NDArray[np.float64]
@@ -99,7 +100,7 @@ def train_regression(
     n_i = best_n_i(target, finished, kept, space, singles, rng)
     rows = target.examples(finished, n_i)
     first = target.examples(judging, 1).of(apart)
-    held_out = _fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds)
+    held_out = fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds)
     chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
     test = {
         "n": len(first.targets),
@@ -109,7 +110,7 @@ def train_regression(
         "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
-    return Trained(_fitted(CalibratedRegressor(chosen, seed), rows, space, kinds), n_i, test)
+    return Trained(fitted(CalibratedRegressor(chosen, seed), rows, space, kinds), n_i, test)
 
 
 def _tested(
@@ -153,12 +154,6 @@ def fit(kind: str, name: str, rows: Examples, space: FeatureSpace, seed: int) ->
     return learner.fit(space(rows.arguments), targets, groups=rows.groups)
 
 
-def _fitted(learner: Any, rows: Examples, space: FeatureSpace, kinds: Mapping[int, int] | None = None) -> Any:
-    """The learner, fitted; if it has intervals, `kinds` are those of its episodes, by their numbers."""
-    known = {} if kinds is None else {"kinds": np.array([kinds[number] for number in rows.groups.tolist()])}
-    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **known)
-
-
 def check_count(episodes: Sequence[Episode], what: str) -> None:
     """Raise a UsageError if the episodes are too few."""
     if len(episodes) < MIN_EPISODES:
@@ -166,7 +161,7 @@ def check_count(episodes: Sequence[Episode], what: str) -> None:
 
 
 def _mae(learner: Any, rows: Examples, space: FeatureSpace) -> float:
-    return float(np.abs(learner.predict(space(rows.arguments)) - rows.targets).mean())
+    return float(absolute_errors(learner, rows, space).mean())
 
 
 def _curve(
@@ -182,5 +177,5 @@ def _curve(
     order, curve = rng.permutation(kept), []
     for share in CURVE:
         some = order[: round(share * len(order))]
-        curve.append([len(some), _mae(_fitted(clone(learner), rows.of(some), space), test, space)])
+        curve.append([len(some), _mae(fitted(clone(learner), rows.of(some), space), test, space)])
     return [*curve, [len(order), _mae(whole, test, space)]]

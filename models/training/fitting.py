@@ -1,0 +1,26 @@
+"""Fits a learner to examples, and its errors on others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tailor.models.episodes.examples import Examples
+from tailor.models.features.features import FeatureSpace
+
+Array = NDArray[np.float64]
+
+
+def fitted(learner: Any, rows: Examples, space: FeatureSpace, kinds: Mapping[int, int] | None = None) -> Any:
+    """The learner itself, fitted; if it has intervals, `kinds` are those of its episodes, by their numbers."""
+    known = {} if kinds is None else {"kinds": np.array([kinds[number] for number in rows.groups.tolist()])}
+    return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **known)
+
+
+def absolute_errors(learner: Any, rows: Examples, space: FeatureSpace) -> Array:
+    """Absolute errors of the predictions, shape (n,)."""
+    errors: Array = np.abs(learner.predict(space(rows.arguments)) - rows.targets)
+    return errors
