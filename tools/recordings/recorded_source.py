@@ -15,7 +15,7 @@ def source_entry(folders: dict[str, str]) -> dict[str, Any]:
     return {"version": __version__, "folders": folders}
 
 
-def source_contrast(recorded: Any, today: dict[str, str], same_kind: bool = True) -> str:
+def source_contrast(recorded: Any, today: dict[str, str], same_kind: bool) -> str:
     """What lies between the source of a recording and today's, in a line.
 
     Args:

@@ -18,18 +18,19 @@ TODAY = {"executive/core": "aa", "executive/domains/soccer": "bb"}
 
 @pytest.mark.parametrize("recorded", [None, "0.1.0", {}, {"folders": "aa"}, {"folders": ["aa"]}, [1], 7])
 def test_a_recording_that_states_no_source_is_not_guessed_at(recorded):
-    assert source_contrast(recorded, TODAY) == UNSTATED
+    assert source_contrast(recorded, TODAY, same_kind=True) == UNSTATED
 
 
 def test_a_difference_under_the_same_source_is_a_fault():
-    assert source_contrast(source_entry(TODAY), TODAY).endswith("which is a fault")
+    assert source_contrast(source_entry(TODAY), TODAY, same_kind=True).endswith("which is a fault")
 
 
 def test_a_difference_on_a_platform_that_rounds_otherwise_need_not_be_one():
     text = source_contrast(source_entry(TODAY), TODAY, same_kind=False)
     assert "by this very source" in text
     assert "fault" not in text
-    assert "another executive/core" in source_contrast(source_entry({**TODAY, "executive/core": "cc"}), TODAY, False)
+    other = source_entry({**TODAY, "executive/core": "cc"})
+    assert "another executive/core" in source_contrast(other, TODAY, same_kind=False)
 
 
 @pytest.mark.parametrize(
@@ -42,18 +43,18 @@ def test_a_difference_on_a_platform_that_rounds_otherwise_need_not_be_one():
     ],
 )
 def test_the_folders_that_differ_are_named(folders, named):
-    text = source_contrast({"version": "0.0.9", "folders": folders}, TODAY)
+    text = source_contrast({"version": "0.0.9", "folders": folders}, TODAY, same_kind=True)
     assert text == f"recorded by tailor 0.0.9 with {named}"
 
 
 def test_a_hostile_source_gives_one_short_line():
-    text = source_contrast({"version": "1" * 10**6, "folders": {"x" * 10**6: 1, 5: None}}, TODAY)
+    text = source_contrast({"version": "1" * 10**6, "folders": {"x" * 10**6: 1, 5: None}}, TODAY, same_kind=True)
     assert len(text) < 300
 
 
 def test_a_hostile_source_controls_no_terminal():
     hostile = "x\nequal: 1 messages\x1b[2J"
-    text = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY)
+    text = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY, same_kind=True)
     assert text.isprintable()
 
 
