@@ -14,7 +14,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json, shown
 
 MANIFEST = "manifest.json"
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")  # part of the paths of models: "../x" would be written beside the zoo
+# Part of the paths of models: "../x" would be written beside the zoo. Actions have capitals, unlike a spec's NAME.
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
 def _are_names(value: Any) -> bool:
@@ -25,6 +26,11 @@ def _is_context(value: Any) -> bool:
     return isinstance(value, dict) and _are_names(value.get("names", [])) and isinstance(value.get("failure", ""), str)
 
 
+def _is_of_all(value: Any) -> bool:
+    """Random data sets hold 0 for false. A count of some of the episodes would pass for all of them."""
+    return isinstance(value, bool) or (is_count(value) and value == 0)
+
+
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that resuming and training compute with
     "episodes": (is_count, "a whole number"),
     "objects": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
@@ -33,7 +39,7 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "context": (_is_context, "names of columns, and a failure"),
     "seed": (is_count, "a whole number"),
     "stream": (is_count, "a whole number"),
-    "on_policy": (lambda value: isinstance(value, bool) or is_count(value), "true or false"),
+    "on_policy": (_is_of_all, "true or false, or 0 for false"),
     "source_sha256": (lambda value: isinstance(value, str), "text"),
     "source_files": (lambda value: isinstance(value, dict), "an object"),
 }
@@ -67,7 +73,7 @@ def _manifest_error(manifest: Any) -> str:
         return f"a {type(manifest).__name__}, expected an object"
     for key in ("robot", "action"):
         if not (isinstance(manifest.get(key), str) and _NAME.fullmatch(manifest[key])):
-            return f"{key} is {shown(manifest.get(key))}, expected a name of letters, digits, - and _"
+            return f"{key} is {shown(manifest.get(key))}, expected a letter, then letters, digits, - and _"
     for key, (has_shape, expected) in OPTIONAL.items():
         if manifest.get(key) is not None and not has_shape(manifest[key]):
             return f"{key} is {shown(manifest[key])}, expected {expected}"

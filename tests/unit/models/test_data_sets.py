@@ -118,13 +118,15 @@ def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_on
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
-        ("robot", 1, "robot is 1, expected a name"),
-        ("robot", "../agilo", "robot is '../agilo', expected a name of letters, digits"),
-        ("action", "../../reach", "action is '../../reach', expected a name of letters, digits"),
-        ("action", "", "action is '', expected a name"),
+        ("robot", 1, "robot is 1, expected a letter"),
+        ("robot", "../agilo", "robot is '../agilo', expected a letter, then letters, digits, - and _"),
+        ("action", "../../reach", "action is '../../reach', expected a letter, then letters"),
+        ("action", "", "action is '', expected a letter"),
         ("seed", "x", "seed is 'x', expected a whole number"),
         ("stream", 1.5, "stream is 1.5, expected a whole number"),
-        ("on_policy", "no", "on_policy is 'no', expected true or false"),
+        ("action", "1st", "action is '1st', expected a letter, then letters"),
+        ("on_policy", "no", "on_policy is 'no', expected true or false, or 0 for false"),
+        ("on_policy", 3, "on_policy is 3, expected true or false"),
         ("arguments", 5, "arguments is 5, expected a list of name, unit, lower, upper"),
         ("arguments", [], "arguments is"),
         (
