@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from typing import TypeVar
 
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import bus_settings
+from tailor.schemas.services import Role
+from tailor.tools.cli.endpoint import bus_settings, open_bus
 
 GONE_NS = 1_000_000_000  # without a router; zenoh reconnects to an open bus by itself before
 CHECK_NS = 200_000_000
@@ -56,6 +58,35 @@ class BusRenewal:
         if not self.due(session, now_ns) or self._folder is None:
             return False
         return self._secured or self._folder.secured  # each run makes new passwords
+
+
+@dataclass(frozen=True, slots=True)
+class BusRun:
+    """One run of the bus, as a command that outlives it sees it."""
+
+    session: Session
+    _renewal: BusRenewal
+
+    def due(self, now_ns: int) -> bool:
+        """Whether sessions with the next run have to be opened; see `BusRenewal.due`."""
+        return self._renewal.due(self.session, now_ns)
+
+
+@contextmanager
+def open_run(arguments: argparse.Namespace, role: Role, sender: str = "") -> Iterator[BusRun]:
+    """Session with the present run of the bus.
+
+    Args:
+      arguments: Parsed flags of `configure_bus`.
+      role: See `open_bus`.
+      sender: See `open_bus`.
+
+    Raises:
+      UsageError: Wrong flags, no router, or no access.
+    """
+    renewal = BusRenewal(arguments)  # first: it would take a run that begins in between for that of the session
+    with open_bus(arguments, role, sender=sender) as session:
+        yield BusRun(session, renewal)
 
 
 def opened_anew(sessions: ExitStack, opened: Callable[[ExitStack], Opened], ended: Callable[[], bool]) -> Opened | None:

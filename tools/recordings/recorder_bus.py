@@ -8,10 +8,9 @@ from contextlib import ExitStack, contextmanager
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer
-from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRenewal
-from tailor.tools.cli.endpoint import open_bus, sender_of
+from tailor.tools.cli.bus_renewal import BusRun, open_run
+from tailor.tools.cli.endpoint import sender_of
 
 
 class RecorderBus:
@@ -28,12 +27,12 @@ class RecorderBus:
         self.requests: ServiceServer | None = None
         self._arguments, self._service = arguments, service
         self._sessions = ExitStack()
-        self._present: tuple[Session, BusRenewal] | None = None
+        self._run: BusRun | None = None
 
     @property
     def connected(self) -> bool:
         """Whether messages can arrive."""
-        return self._present is not None and self._present[0].connected
+        return self._run is not None and self._run.session.connected
 
     @contextmanager
     def opened(self) -> Iterator[None]:
@@ -48,11 +47,9 @@ class RecorderBus:
 
     def renew(self, now_ns: int) -> None:
         """Open another session if one is due; takes up to three seconds while the bus is starting."""
-        if self._present is not None:
-            session, renewal = self._present
-            if not renewal.due(session, now_ns):
-                return
-        self._present, self.requests = None, None
+        if self._run is not None and not self._run.due(now_ns):
+            return
+        self._run, self.requests = None, None
         self._sessions.close()
         try:
             self._open()
@@ -60,9 +57,8 @@ class RecorderBus:
             return
 
     def _open(self) -> None:
-        renewal = BusRenewal(self._arguments)
-        session = self._sessions.enter_context(open_bus(self._arguments, "recorder", sender=sender_of(self._arguments)))
-        _, subscription = session.subscribe_all("**", self.queue)
+        run = self._sessions.enter_context(open_run(self._arguments, "recorder", sender_of(self._arguments)))
+        _, subscription = run.session.subscribe_all("**", self.queue)
         self._sessions.callback(subscription.undeclare)
-        self.requests = session.service_server(self._service) if self._service else None
-        self._present = session, renewal
+        self.requests = run.session.service_server(self._service) if self._service else None
+        self._run = run

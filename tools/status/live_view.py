@@ -9,10 +9,9 @@ from contextlib import ExitStack
 from rich.console import Console, Group
 from rich.live import Live
 
-from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
-from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
+from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
 from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.operator.current_button import CurrentButton
@@ -45,25 +44,22 @@ class LiveView:
           UsageError: At the start no router responds, or it refuses this user.
         """
         with ExitStack() as sessions:
-            renewal, session = self._open(sessions)
+            run: BusRun | None = self._open(sessions)
             codec.prime()
             console = Console(highlight=False, markup=False)
             with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
-                while not self._watch(session, renewal, keyboard, live):
-                    opened = opened_anew(sessions, self._open, lambda: self._is_to_end(keyboard, live))
-                    if opened is None:
-                        self._key.finish()
-                        break
-                    renewal, session = opened
+                while run is not None and not self._watch(run, keyboard, live):
+                    run = opened_anew(sessions, self._open, lambda: self._is_to_end(keyboard, live))
+                if run is None:  # it ended while a bus was waited for
+                    self._key.finish()
             return self._model.picture(self._read_ns)  # not later: nobody is silent since nothing is read
 
-    def _open(self, sessions: ExitStack) -> tuple[BusRenewal, Session]:
+    def _open(self, sessions: ExitStack) -> BusRun:
         """The observer's session, and one of the stop key: a flood of all that is observed must not delay it."""
-        renewal = BusRenewal(self._arguments)
-        session = sessions.enter_context(open_bus(self._arguments, "observer"))
+        run = sessions.enter_context(open_run(self._arguments, "observer"))
         people = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(people))
-        return renewal, session
+        return run
 
     def _is_to_end(self, keyboard: Keyboard, live: Live) -> bool:
         """Whether the view is to end while a bus is waited for; keys are heard, and the state is drawn as it ages."""
@@ -73,17 +69,17 @@ class LiveView:
         self._draw(keyboard, live)
         return False
 
-    def _watch(self, session: Session, renewal: BusRenewal, keyboard: Keyboard, live: Live) -> bool:
+    def _watch(self, run: BusRun, keyboard: Keyboard, live: Live) -> bool:
         """Whether the view is to end; if not, new sessions are due."""
         drawn_ns, began_ns = 0, time.monotonic_ns()
         self._model, self._read_ns = SystemModel(began_ns), began_ns
-        queue, subscription = session.subscribe_all("**")
+        queue, subscription = run.session.subscribe_all("**")
         watcher = Watcher(queue, self._model, began_ns)
         try:
             while not self._ended(keys := keyboard.read()):
                 self._key.poll(keys)
                 now_ns = time.monotonic_ns()
-                if renewal.due(session, now_ns):
+                if run.due(now_ns):
                     return False
                 if now_ns - drawn_ns >= DRAW_NS:
                     drawn_ns = now_ns

@@ -17,13 +17,12 @@ from pathlib import Path
 
 from rich.console import Console
 
-from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
-from tailor.tools.cli.endpoint import configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
+from tailor.tools.cli.endpoint import configure_bus, configure_sender, sender_of
 from tailor.tools.cli.output_files import check_output
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
@@ -92,20 +91,19 @@ def _live(arguments: argparse.Namespace) -> int:
     if sys.platform == "linux":
         os.nice(NICENESS)
 
-    def opened(sessions: ExitStack) -> tuple[BusRenewal, Session]:
-        renewal = BusRenewal(arguments)
-        return renewal, sessions.enter_context(open_bus(arguments, "scene", sender=sender_of(arguments)))
+    def opened(sessions: ExitStack) -> BusRun:
+        return sessions.enter_context(open_run(arguments, "scene", sender_of(arguments)))
 
     with ExitStack() as sessions:
-        run: tuple[BusRenewal, Session] | None = opened(sessions)
+        run: BusRun | None = opened(sessions)
         codec.prime()
         while run is not None:
-            publish_scenes(run[1], _run_ended(*run, stop), notifier)
+            publish_scenes(run.session, _ended(run, stop), notifier)
             run = opened_anew(sessions, opened, lambda: stop.requested)
         notifier.stopping()
     return 0
 
 
-def _run_ended(renewal: BusRenewal, session: Session, stop: Stop) -> Callable[[], bool]:
+def _ended(run: BusRun, stop: Stop) -> Callable[[], bool]:
     """Tells whether a stop is requested, or a session with the next run of the bus is due."""
-    return lambda: stop.requested or renewal.due(session, time.monotonic_ns())
+    return lambda: stop.requested or run.due(time.monotonic_ns())

@@ -8,12 +8,11 @@ import sys
 from contextlib import ExitStack
 from functools import partial
 
-from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRenewal, opened_anew
+from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
 from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.operator.current_button import CurrentButton
@@ -50,13 +49,13 @@ class LiveRun:
             if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
                 os.nice(NICENESS)
             codec.prime()
-            opened: tuple[BusRenewal, Session] | None = self._open(sessions)
+            run: BusRun | None = sessions.enter_context(open_run(self._arguments, "observer"))
             shown = bus_settings(self._arguments).endpoint
             print(f"http://127.0.0.1:{port}/ shows {shown}; Ctrl-C stops it", flush=True)
             open_again = partial(self._open_again, button=endpoint is not None)
-            while opened is not None:
-                self._listen(sessions, *opened)
-                opened = opened_anew(sessions, open_again, lambda: self._stop.requested)
+            while run is not None:
+                self._listen(sessions, run)
+                run = opened_anew(sessions, open_again, lambda: self._stop.requested)
 
     def _stop_endpoint(self, sessions: ExitStack) -> StopEndpoint | None:
         """The page's stop button, with a session of its own; None where this user may not stop drivers."""
@@ -71,22 +70,18 @@ class LiveRun:
         session = sessions.enter_context(open_bus(self._arguments, "people"))
         sessions.enter_context(self._button.of(session))
 
-    def _open(self, sessions: ExitStack) -> tuple[BusRenewal, Session]:
-        renewal = BusRenewal(self._arguments)
-        return renewal, sessions.enter_context(open_bus(self._arguments, "observer"))
-
-    def _open_again(self, sessions: ExitStack, button: bool) -> tuple[BusRenewal, Session]:
+    def _open_again(self, sessions: ExitStack, button: bool) -> BusRun:
         """Sessions with another run of the bus, whose page begins anew."""
         self._broadcast.beat(0.0, bus=False)  # opening a session takes up to three seconds
         if button:
             self._take_button(sessions)
-        opened = self._open(sessions)
+        run = sessions.enter_context(open_run(self._arguments, "observer"))
         self._broadcast.restart()  # not earlier: an empty page passes for a live one
-        return opened
+        return run
 
-    def _listen(self, sessions: ExitStack, renewal: BusRenewal, session: Session) -> None:
+    def _listen(self, sessions: ExitStack, run: BusRun) -> None:
         """Follow the bus until a stop is requested or new sessions are due."""
-        arguments, clock = self._arguments, MonotonicClock()
+        arguments, session, clock = self._arguments, run.session, MonotonicClock()
         intake, subscribe_all = session.subscribe_all("**")
         sessions.callback(subscribe_all.undeclare)
         explainer = None if arguments.no_models else Explainer()
@@ -94,4 +89,4 @@ class LiveRun:
         listener = BusListener(
             intake, timeline, self._broadcast, arguments.sender, now_ns, connected=lambda: session.connected
         )
-        listener.run(clock, lambda: self._stop.requested or renewal.due(session, clock.now_ns()))
+        listener.run(clock, lambda: self._stop.requested or run.due(clock.now_ns()))

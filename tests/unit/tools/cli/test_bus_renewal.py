@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import argparse
 import socket
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
 import pytest
 
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder
-from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal
+from tailor.tools.cli import bus_renewal
+from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal, open_run
 
 ENDPOINT = "tcp/127.0.0.1:7999"
 GONE = GONE_NS + CHECK_NS
@@ -66,6 +67,24 @@ def test_the_next_run_of_a_bus_needs_a_new_session(users):
         assert not watch.due(session, 3 * GONE), "zenoh has reconnected by itself"
         session.connected = False
         assert not watch.due(session, 3 * GONE + CHECK_NS), "a moment ago it was"
+
+
+def test_a_run_that_begins_while_a_session_is_opened_is_not_taken_for_its_own(monkeypatch):
+    runs, session = ExitStack(), Cut()
+
+    @contextmanager
+    def open_slowly(arguments, role, sender):
+        runs.close()
+        runs.enter_context(bus())
+        yield session
+
+    monkeypatch.setattr(bus_renewal, "open_bus", open_slowly)
+    with runs:
+        runs.enter_context(bus())
+        with open_run(argparse.Namespace(connect=ENDPOINT, key=None, config=""), "observer") as run:
+            assert not run.due(0)
+            session.connected = False
+            assert run.due(GONE)
 
 
 def test_a_key_outlives_the_bus():

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import pytest
 
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli import bus_renewal
+from tailor.tools.cli.bus_renewal import BusRun
 from tailor.tools.status import live_view
 from tailor.tools.status.live_view import LiveView
 from tailor.tools.status.stop_key import StopKey
@@ -62,22 +63,19 @@ def viewed(monkeypatch):
     def view(keys, opening=(True,), due=()):
         openings, dues, button = iter(opening), iter(due), Button()
 
-        @contextmanager
-        def open_bus(arguments, role):
-            if role == "observer" and not next(openings):
-                raise UsageError("no router responds")
-            yield SilentSession()
-
         class Renewal:
-            def __init__(self, arguments):
-                pass
-
             def due(self, session, now_ns):
                 return next(dues, False)
 
+        @contextmanager
+        def open_run(arguments, role):
+            if not next(openings):
+                raise UsageError("no router responds")
+            yield BusRun(SilentSession(), Renewal())
+
         for name, stand_in in (
-            ("open_bus", open_bus),
-            ("BusRenewal", Renewal),
+            ("open_run", open_run),
+            ("open_bus", lambda arguments, role: nullcontext(SilentSession())),
             ("CurrentButton", lambda: button),
             ("Keyboard", lambda: Keys(*keys)),
         ):

@@ -10,6 +10,7 @@ import pytest
 
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli import bus_renewal
 from tailor.tools.viewer.live import live_run
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.timeline import Event
@@ -23,12 +24,13 @@ PAST, BEGINS = [[0.0, "tick", {"work": 1.0}]], []
 @pytest.mark.parametrize("refused", ["people", "observer", ""])
 def test_pages_begin_anew_only_once_the_next_run_is_listened_to(monkeypatch, refused):
     @contextmanager
-    def open_bus(arguments, role):
+    def open_bus(arguments, role, sender=""):
         if role == refused:
             raise UsageError("no router responds")
         yield SilentSession()
 
-    monkeypatch.setattr(live_run, "open_bus", open_bus)
+    for module in (live_run, bus_renewal):
+        monkeypatch.setattr(module, "open_bus", open_bus)
     stop = Stop()
     stop.requested = True
     run = LiveRun(FLAGS, stop)
