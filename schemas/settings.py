@@ -67,7 +67,7 @@ def _convert(hint: Any, value: Any, key: str, problems: list[str]) -> Any:
     if origin is typing.Literal:
         if value in known:
             return value
-        problems.append(f"'{key}' is {shown(value)}, expected one of: {', '.join(map(str, known))}")
+        problems.append(f"'{key}' is {shown(value)}, expected {_name_of(hint)}")
     elif origin is tuple and isinstance(value, list | tuple):
         hints = [known[0]] * len(value) if known[-1] is Ellipsis else list(known)
         if len(hints) == len(value):
@@ -85,5 +85,11 @@ def _convert(hint: Any, value: Any, key: str, problems: list[str]) -> Any:
 
 
 def _name_of(hint: Any) -> str:
-    """A type in an error message."""
+    """A type in an error message, by the words of a table's author and not by our classes."""
+    if dataclasses.is_dataclass(hint):
+        return "a table"
+    if typing.get_origin(hint) is tuple:
+        return "a list"
+    if typing.get_origin(hint) is typing.Literal:
+        return f"one of: {', '.join(map(str, typing.get_args(hint)))}"
     return str(getattr(hint, "__name__", hint))

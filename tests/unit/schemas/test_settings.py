@@ -44,6 +44,11 @@ def test_nested_tables_become_nested_settings():
             {"executive": {"refinement": {"arrival_spread": [["x", -0.1]]}}},
             "f.toml: refinement.arrival_spread of x is -0.1, expected a finite number >= 0",
         ),
+        ({"bus": 5}, "f.toml: 'bus' is 5, expected a table"),
+        (
+            {"executive": {"refinement": {"arrival_spread": 5}}},
+            "f.toml: 'executive.refinement.arrival_spread' is 5, expected a list",
+        ),
         (
             {"executive": {"adopt_gain_s": 10**400}},
             f"f.toml: 'executive.adopt_gain_s' is 1{'0' * 56}..., expected a number of at most 64 bits",

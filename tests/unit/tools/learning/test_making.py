@@ -157,6 +157,11 @@ ROUND = "[[rounds]]\nsource = 'active'\nepisodes = 1\nscenarios = [{}]"
         ("episodes = 9\n[training]\nseed = 4294967295", "training.seed is 4294967295, expected 0 to 1000000000"),
         ("episodes = 9\nbeside = -5\nobjects = -1", "beside is -5, expected at least 0; objects is -1, expected at"),
         ("episodes = 9\n[[random]]\naction = 'reach'", "'random.episodes' is missing, expected int"),
+        (
+            "episodes = 9\n[[rounds]]\nscenarios = ['a']\nepisodes = 1",
+            "'rounds.source' is missing, expected one of: on-",
+        ),
+        ("episodes = 9\nrounds = [3]", "'rounds' is 3, expected a table"),
         (f"episodes = 9\n{2 * REACH}", "random: 'reach' is there twice, expected once"),
         ("episodes = 9\n" + ROUND.format(""), "rounds.scenarios is empty, expected at least one"),
         ("episodes = 9\n" + ROUND.format("'a', 'b', 'a'"), "rounds.scenarios: 'a' is there twice, expected once"),
