@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import make_dataclass
 from functools import cache
 from importlib.resources.abc import Traversable
+from keyword import iskeyword
 from typing import Any
 
 from tailor.schemas.messages import Message
 
 HEADER = "std_msgs/Header"
+STAMP = "stamp_ns"  # stands for the header
+FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9])*")  # as ROS 2 has it
 PRIMITIVES: Mapping[str, type] = {"int64": int, "float64": float, "bool": bool, "string": str}
 
 
@@ -55,12 +59,13 @@ def _read(name: str, files: Mapping[str, Traversable], types: dict[str, Any], na
             if not written:
                 continue
             kind = _field(written, first=not fields, files=files, types=types, namespace=namespace)
-            if kind is None:
+            field = STAMP if written[0] == HEADER else written[-1]
+            if kind is None or field in dict(fields):
                 known = ", ".join((*PRIMITIVES, *files))
                 raise ValueError(
-                    f"{files[name]}, line {number}: '{line.strip()}', expected a NAME after one of: {known}"
+                    f"{files[name]}, line {number}: '{line.strip()}', expected a new NAME after one of: {known}"
                 )
-            fields.append(("stamp_ns", int) if written[0] == HEADER else (written[1], kind))
+            fields.append((field, kind))
         types[name] = make_dataclass(name, fields, bases=(Message,), namespace=dict(namespace), frozen=True, slots=True)
     return types[name]
 
@@ -69,14 +74,14 @@ def _field(
     written: list[str], first: bool, files: Mapping[str, Traversable], types: dict[str, Any], namespace: dict[str, Any]
 ) -> Any:
     """Type of a field; None if there is none such."""
-    if len(written) != 2 or not written[1].isidentifier():
+    if len(written) != 2 or not FIELD_NAME.fullmatch(written[1]) or iskeyword(written[1]) or written[1] == STAMP:
         return None
-    name, array, _ = written[0].partition("[]")
+    name, array, rest = written[0].partition("[]")
     if name == HEADER:
         return int if first and not array else None
     element = PRIMITIVES.get(name)
     if element is None and array and name in files:
         element = _read(name, files, types, namespace)
-    if element is None:
+    if element is None or rest:
         return None
     return tuple[element, ...] if array else element  # type: ignore[valid-type]

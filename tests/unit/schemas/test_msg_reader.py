@@ -46,11 +46,23 @@ def test_a_type_has_the_fields_of_its_file(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["float32 x", "float64", "float64 x y", "float64[3] x", "Nothing[] x", "float64 2x", "uint8 A=1", "Gripper[] own"],
+    [
+        *(
+            "float32 x",
+            "float64",
+            "float64 x y",
+            "float64[3] x",
+            "Nothing[] x",
+            "float64 2x",
+            "uint8 A=1",
+            "Gripper[] own",
+        ),
+        *("float64 class", "float64 width", "int64 stamp_ns", "string ROS_TYPE", "float64[][] x"),
+    ],
 )
 def test_a_line_that_no_field_can_be_is_named(folder: Path, line: str) -> None:
     (folder / "msg" / "Gripper.msg").write_text(f"float64 width\n{line}  # text\n")
-    with pytest.raises(ValueError, match=r"Gripper.msg, line 2: .* expected a NAME after one of: int64"):
+    with pytest.raises(ValueError, match=r"Gripper.msg, line 2: .* expected a new NAME after one of: int64"):
         read_messages(folder)
 
 
