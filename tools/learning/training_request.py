@@ -146,10 +146,19 @@ def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
     """The command that gathered a data set."""
     if "recordings" in manifest:
         return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
-    scenarios = manifest.get("scenarios")
-    what = manifest["action"] if scenarios is None else f"--on-policy {' '.join(scenarios)}"
+    number = f"--episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
+    profile = f" --profile {manifest['profile']}" if manifest.get("profile") else ""
+    return f"tailor gather {robot} {_drawn(manifest)} {number}{profile}"
+
+
+def _drawn(manifest: Mapping[str, Any]) -> str:
+    """The flags that name what the episodes of a data set were drawn from."""
+    scenarios, situations = " ".join(manifest.get("scenarios") or ()), manifest.get("situations")
+    if situations:
+        return f"--active {scenarios} --pool {situations // max(1, manifest.get('episodes') or 1)}"
+    if scenarios:
+        return f"--on-policy {scenarios}"
+    action: str = manifest["action"]
     if manifest.get("objects"):
-        what += f" --beside-objects {manifest['objects']}"
-    elif (manifest.get("context") or {}).get("names"):
-        what += " --beside-object"
-    return f"tailor gather {robot} {what} --episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
+        return f"{action} --beside-objects {manifest['objects']}"
+    return f"{action} --beside-object" if (manifest.get("context") or {}).get("names") else action

@@ -141,6 +141,8 @@ def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_on
         ("episodes", "x", "episodes is 'x', expected a whole number"),
         ("objects", 0, "objects is 0, expected a whole number, at least 1"),
         ("scenarios", [5], "scenarios is [5], expected a list of names"),
+        ("situations", "x", "situations is 'x', expected a whole number"),
+        ("profile", 3, "profile is 3, expected text"),
         ("context", {"names": "x"}, "expected names of columns, and a failure"),
         ("source_sha256", [], "source_sha256 is [], expected text"),
         ("source_files", [1], "source_files is [1], expected an object"),

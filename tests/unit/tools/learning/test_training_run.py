@@ -8,7 +8,7 @@ import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.training import success_training
-from tailor.tools.learning.training_request import TrainingRequest
+from tailor.tools.learning.training_request import TrainingRequest, feature_spaces, reproduction_command
 from tailor.tools.learning.training_run import context_jobs, own_jobs
 
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
@@ -61,3 +61,21 @@ def test_intervals_are_apart_only_where_both_sorts_of_episodes_determine_them(in
     kinds = [kind for kind, *_ in own_jobs(replace(data, episodes=marked), TrainingRequest("agilo", Path("zoo")))]
     assert ("duration_beside" in kinds) == apart
     assert "duration" in kinds
+
+
+@pytest.mark.parametrize(
+    ("entries", "flags"),
+    [
+        ({}, "goToPose --episodes 5 --seed 3"),
+        ({"profile": "degraded"}, "goToPose --episodes 5 --seed 3 --profile degraded"),
+        ({"objects": 4}, "goToPose --beside-objects 4 --episodes 5 --seed 3"),
+        ({"context": {"names": ["r"]}}, "goToPose --beside-object --episodes 5 --seed 3"),
+        ({"scenarios": ["a", "b"], "on_policy": True}, "--on-policy a b --episodes 5 --seed 3"),
+        ({"scenarios": ["a"], "situations": 20}, "--active a --pool 4 --episodes 5 --seed 3"),
+    ],
+)
+def test_a_card_names_the_command_that_gathered_its_episodes(entries, flags) -> None:
+    request, folder = TrainingRequest("agilo", Path()), Path("data/agilo/goToPose")
+    manifest = {"action": "goToPose", "episodes": 5, "seed": 3, **entries}
+    command = reproduction_command(request, feature_spaces(request, NAMES[:8], folder), {folder: manifest})
+    assert command.startswith(f"tailor gather agilo {flags} --out data/agilo && tailor train agilo goToPose ")
