@@ -149,6 +149,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.recordings:
         if arguments.profile:
             raise UsageError("--profile chooses a simulated body, expected none with --from")
+        if arguments.resume:
+            raise UsageError("--resume continues simulated runs, expected none with --from")
         extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         for line in extracted.left_out:
             Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)

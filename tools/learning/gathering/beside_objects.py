@@ -7,7 +7,7 @@ run gives many episodes. They share their number's quotient by `objects`: traini
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import TICK_S, Episode
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Message
 from tailor.simnodes.body import Body
 from tailor.tools.lockstep.action_run import run_action
@@ -22,6 +23,7 @@ from tailor.tools.lockstep.samplers.beside import Beside
 from tailor.tools.lockstep.task_sampler import sampler_of
 
 
+@runtime_checkable
 class ObjectSampler(Protocol):
     """What a robot's task sampler adds for actions with a context."""
 
@@ -41,6 +43,19 @@ class ObjectSampler(Protocol):
         ...
 
 
+def object_sampler(domain: Domain) -> ObjectSampler:
+    """The domain's task sampler, which draws objects.
+
+    Raises:
+      UsageError: It draws none, or the robot's package has no sampler.
+    """
+    sampler: object = sampler_of(domain)
+    if not isinstance(sampler, ObjectSampler):
+        kind = type(sampler).__name__
+        raise UsageError(f"the sampler {kind} of {domain.name} lacks `sample_among_objects` or `beside`, expected both")
+    return sampler
+
+
 def runs_beside_objects(
     objects: int,
     domain: Domain,
@@ -51,7 +66,7 @@ def runs_beside_objects(
 ) -> tuple[list[Episode], float]:
     """Run an action once a number; `objects` episodes of each run, and the simulated seconds."""
     action, episodes, simulated_s = domain.actions[name], [], 0.0
-    sampler: Any = sampler_of(domain)
+    sampler = object_sampler(domain)
     for number in numbers:
         rng = rng_of(number)
         run = run_action(body, domain, name, sampler.sample_among_objects(action, rng), rng, traced=True)

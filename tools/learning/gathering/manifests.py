@@ -99,7 +99,9 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
     if not (folder / MANIFEST).exists():
         return
     if not resume:
-        raise UsageError(f"{folder}: holds episodes already (expected another --out, or --resume to continue)")
+        raise UsageError(
+            f"{folder}: holds episodes already (expected another --out, or --resume to continue simulated runs)"
+        )
     existing = read_manifest(folder)
     for key, value in manifest.items():
         if key not in COUNTS and existing.get(key) != value:

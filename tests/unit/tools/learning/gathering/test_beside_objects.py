@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages.soccer import OpponentsTruth
 from tailor.simnodes.agilo.scene import RAIL
+from tailor.tools.learning.gathering import beside_objects, random_episodes
 from tailor.tools.learning.gathering.beside_objects import runs_beside_objects
+from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.lockstep.action_run import new_body, run_action
 from tailor.tools.lockstep.samplers import opponents
 from tailor.tools.lockstep.task_sampler import sampler_of
@@ -53,6 +56,14 @@ def test_the_outline_is_the_simulated_one():
     places = np.array([[-0.5, 0.0], [0.0, 0.4], [0.6, 0.0], [0.318, 0.0]])
     clear = opponents.clearances(at, places)[:, 0]
     assert clear == pytest.approx([0.27, 0.24, math.hypot(0.6 - 0.288, 0.119) - 0.005, 0.118], abs=4e-3)
+
+
+def test_a_sampler_that_draws_no_objects_is_refused_before_anything_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(beside_objects, "sampler_of", lambda domain: object())
+    spec = DataSetSpec("soccer", "goToPose", 1, 1, tmp_path / "goToPose", beside=True, objects=2)
+    with pytest.raises(UsageError, match="the sampler object of soccer lacks `sample_among_objects` or `beside`"):
+        random_episodes.prepare(spec, resume=False)
+    assert not (tmp_path / "goToPose").exists()
 
 
 def test_one_run_gives_many_episodes_with_one_object_each():

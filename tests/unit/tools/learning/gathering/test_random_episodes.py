@@ -134,6 +134,7 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
         (["agilo", "--profile", "x"], "no profile 'x' of soccer's body, expected one of: nominal, degraded"),
         (["agilo", "--profile", "degraded", "--from", "a.mcap"], "expected none with --from"),
+        (["agilo", "--resume", "--from", "a.mcap"], "--resume continues simulated runs, expected none with --from"),
     ],
 )
 def test_bad_input_is_told_before_anything_starts(wrong: list[str], message: str, tmp_path: Path, capsys) -> None:
