@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.tree_boxes import TreeBoxes, tree_boxes
 from tailor.models.cards.card import UNITS, Card
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules import leaf_rules
 from tailor.models.rules.model_queries import distilled_duration, distilled_success, random_arguments, space_of
@@ -26,7 +27,7 @@ RANDOM_ARGUMENTS = 3000  # to compare on, if there are no episodes
 
 
 def rules(model: Model, file: Path, tree: int | None, data: Path | None) -> str:
-    """Print a model as rules.
+    """A model as rules, with a first line that compares both.
 
     Args:
       model: The loaded model.
@@ -92,12 +93,11 @@ def _arguments(card: Card, data: Path | None) -> tuple[Array, str]:
     from tailor.models.episodes.episodes import read_data_set
 
     folder = (data or Path("data") / card["robot"]) / card["action"]
-    if (folder / "manifest.json").exists():
+    if (folder / MANIFEST).exists():
         episodes = read_data_set(folder).episodes
         return np.stack([episode.ticks[0] for episode in episodes]), f"over the {len(episodes)} episodes in {folder}"
-    return random_arguments(
-        card, RANDOM_ARGUMENTS, np.random.default_rng(1)
-    ), f"over {RANDOM_ARGUMENTS} random arguments"
+    drawn = random_arguments(card, RANDOM_ARGUMENTS, np.random.default_rng(1))
+    return drawn, f"over {RANDOM_ARGUMENTS} random arguments"
 
 
 def _predictions(model: Model, arguments: Array) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -62,18 +63,18 @@ def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
     """
     roots = request.data or (Path("data") / request.robot,)
     folders: dict[str, list[Path]] = {}
-    for path in (path for root in roots for path in sorted(root.glob("*/manifest.json"))):
+    for path in (path for root in roots for path in sorted(root.glob(f"*/{MANIFEST}"))):
         folders.setdefault(path.parent.name, []).append(path.parent)
     searched = ", ".join(map(str, roots))
     for action in request.actions:
         if action not in folders:
             raise UsageError(f"{searched}: no episodes of '{action}' (data sets there: {', '.join(folders) or 'none'})")
     if not folders:
-        raise UsageError(f"{searched}: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)")
+        raise UsageError(f"{searched}: no data sets, expected ACTION/{MANIFEST} (`tailor gather` makes them)")
     return {action: folders[action] for action in request.actions or folders}
 
 
-def feature_spaces(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
+def spaces_by_kind(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:
     """Feature space of each kind of model of the action by itself: "duration", "duration_beside", "energy", "success".
 
     Args:
@@ -126,7 +127,7 @@ def reproduction_command(
 
     Args:
       request: The training run.
-      spaces: See `feature_spaces`.
+      spaces: See `spaces_by_kind`.
       manifests: Manifest of each data set, by folder.
     """
     if request.command:

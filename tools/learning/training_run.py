@@ -15,8 +15,8 @@ from tailor.tools.learning.training_request import (
     TrainingRequest,
     context_space,
     data_sets,
-    feature_spaces,
     reproduction_command,
+    spaces_by_kind,
 )
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     data = merge([without_context(each) for each in alone or sets])
     if data.manifest["robot"] != request.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
-    spaces = feature_spaces(request, data.names, folders[0])
+    spaces = spaces_by_kind(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
     own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]

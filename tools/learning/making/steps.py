@@ -15,7 +15,7 @@ from tailor.tools.learning.making.installing import check_complete
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.training import train_all, training_request
 from tailor.tools.learning.recipe_checks import check_recipe
-from tailor.tools.learning.training_request import feature_spaces
+from tailor.tools.learning.training_request import spaces_by_kind
 from tailor.tools.learning.training_run import checked
 from tailor.tools.parallel.steps import Step
 
@@ -29,7 +29,7 @@ def check(making: Making) -> None:
     check_recipe(making.robot, making.recipe)
     request, domain = checked(training_request(making, making.zoo)), domains.load(making.domain)
     for action in run_data_sets.modelled_actions(making.domain):
-        feature_spaces(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
+        spaces_by_kind(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
 
 
 def make(making: Making) -> Iterator[Step]:

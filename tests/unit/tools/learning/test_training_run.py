@@ -8,7 +8,7 @@ import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.training import success_training
-from tailor.tools.learning.training_request import TrainingRequest, feature_spaces, reproduction_command
+from tailor.tools.learning.training_request import TrainingRequest, reproduction_command, spaces_by_kind
 from tailor.tools.learning.training_run import context_jobs, own_jobs
 
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
@@ -77,5 +77,5 @@ def test_intervals_are_apart_only_where_both_sorts_of_episodes_determine_them(in
 def test_a_card_names_the_command_that_gathered_its_episodes(entries, flags) -> None:
     request, folder = TrainingRequest("agilo", Path()), Path("data/agilo/goToPose")
     manifest = {"action": "goToPose", "episodes": 5, "seed": 3, **entries}
-    command = reproduction_command(request, feature_spaces(request, NAMES[:8], folder), {folder: manifest})
+    command = reproduction_command(request, spaces_by_kind(request, NAMES[:8], folder), {folder: manifest})
     assert command.startswith(f"tailor gather agilo {flags} --out data/agilo && tailor train agilo goToPose ")
