@@ -114,18 +114,22 @@ def _faults(recipe: Recipe) -> Iterator[str]:
     for name, seed in (("seed", recipe.seed), ("training.seed", recipe.training.seed)):
         if not 0 <= seed <= MAX_SEED:
             yield f"{name} is {seed}, expected 0 to {MAX_SEED}"
-    for name, count in (("beside", recipe.beside), ("objects", recipe.objects)):
-        if count < 0:
-            yield f"{name} is {count}, expected at least 0"
-    numbers = [number for each in recipe.rounds for number in (each.episodes, each.pool)]
-    for count in (recipe.episodes, *(each.episodes for each in recipe.random), *numbers):
-        if count < 1:
-            yield f"a number of episodes is {count}, expected at least 1"
+    yield from (
+        f"{name} is {count}, expected at least {least}" for name, count, least in _counts(recipe) if count < least
+    )
     yield from _repeated("random", [each.action for each in recipe.random])
     for each in recipe.rounds:
         if not each.scenarios:
             yield "rounds.scenarios is empty, expected at least one"
         yield from _repeated("rounds.scenarios", each.scenarios)
+
+
+def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:
+    """Key of each number in the file, its value, and the least legal one."""
+    yield from (("episodes", recipe.episodes, 1), ("beside", recipe.beside, 0), ("objects", recipe.objects, 0))
+    yield from (("random.episodes", each.episodes, 1) for each in recipe.random)
+    for each in recipe.rounds:
+        yield from (("rounds.episodes", each.episodes, 1), ("rounds.pool", each.pool, 1))
 
 
 def _repeated(name: str, words: Sequence[str]) -> Iterator[str]:

@@ -148,7 +148,7 @@ ROUND = "[[rounds]]\nsource = 'active'\nepisodes = 1\nscenarios = [{}]"
     ("text", "message"),
     [
         ("", "lacks `episodes`"),
-        ("episodes = 0", "a number of episodes is 0, expected at least 1"),
+        ("episodes = 0", "recipe.toml: episodes is 0, expected at least 1"),
         ("episodes = 'many'", "'episodes' is 'many', expected int"),
         ("episodes = [", "not TOML"),
         ("episodes = " + "[" * 5000, "nested too deeply, expected a recipe"),
@@ -166,8 +166,9 @@ ROUND = "[[rounds]]\nsource = 'active'\nepisodes = 1\nscenarios = [{}]"
         ("episodes = 9\n" + ROUND.format(""), "rounds.scenarios is empty, expected at least one"),
         ("episodes = 9\n" + ROUND.format("'a', 'b', 'a'"), "rounds.scenarios: 'a' is there twice, expected once"),
         ("episodes = 9\n[[rounds]]\nsource = 'guess'\nscenarios = []\nepisodes = 1", "'rounds.source' is 'guess'"),
+        ("episodes = 9\n" + ROUND.format("'a'") + "\npool = 0", "rounds.pool is 0, expected at least 1"),
         ("episodes = 9\nepochs = 3", "unknown key 'epochs'"),
-        ("episodes = 9\n[[random]]\naction = 'reach'\nepisodes = 0", "a number of episodes is 0"),
+        ("episodes = 9\n[[random]]\naction = 'reach'\nepisodes = 0", "random.episodes is 0, expected at least 1"),
         ("episodes = 9\n[training]\nkinds = ['durations']", "'training.kinds' is 'durations', expected one of"),
     ],
 )
