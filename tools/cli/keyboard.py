@@ -17,6 +17,7 @@ class Keyboard:
 
     def __init__(self) -> None:
         self._saved: list[Any] | None = None
+        self._unnamed = b""  # read, but not yet returned by `pressed`
         self._file = sys.stdin.fileno() if sys.stdin and sys.stdin.isatty() else None
 
     def __enter__(self) -> Keyboard:
@@ -35,8 +36,17 @@ class Keyboard:
         return self._file is not None
 
     def pressed(self) -> str:
-        """Name of a pressed key: space, up, down, right or quit; empty if there is none."""
-        return KEYS.get(self.read(), "")
+        """Name of the next pressed key: space, up, down, right or quit; empty if there is none. Others are skipped."""
+        self._unnamed += self.read()
+        while self._unnamed:
+            for code, name in KEYS.items():
+                if self._unnamed.startswith(code):
+                    self._unnamed = self._unnamed.removeprefix(code)
+                    return name
+            if any(code.startswith(self._unnamed) for code in KEYS):
+                break  # the rest of an arrow key is on its way
+            self._unnamed = self._unnamed[1:]
+        return ""
 
     def read(self) -> bytes:
         """All bytes waiting, at most eight: of several keys pressed at once, none is lost; empty if there is none."""
