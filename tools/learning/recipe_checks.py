@@ -7,6 +7,7 @@ import numpy as np
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import random_episodes, run_data_sets
+from tailor.tools.learning.gathering.beside_objects import check_sampler
 from tailor.tools.learning.recipe import Recipe
 from tailor.tools.lockstep.bodies import check_profile
 
@@ -22,8 +23,8 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     """Check a recipe: names of the profile, actions and scenarios, and that rounds can choose.
 
     Raises:
-      UsageError: The robot has none of a name; or the recipe has rounds, and gathers nothing beside objects where the
-        executive chooses by models of success beside them.
+      UsageError: The robot has none of a name, or a sampler that draws no objects where some are wanted; or the recipe
+        has rounds, and gathers nothing beside objects where the executive chooses by models of success beside them.
     """
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
@@ -33,6 +34,8 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
             raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
     for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
-    needed = learned_beside(domain) if recipe.rounds else []
-    if needed and not recipe.beside:
+    needed = learned_beside(domain)
+    if needed and recipe.beside:
+        check_sampler(domains.load(domain), recipe.objects)
+    if needed and recipe.rounds and not recipe.beside:
         raise UsageError(f"recipe: beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")

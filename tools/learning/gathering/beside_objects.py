@@ -20,7 +20,9 @@ from tailor.schemas.messages import Message
 from tailor.simnodes.body import Body
 from tailor.tools.lockstep.action_run import run_action
 from tailor.tools.lockstep.samplers.beside import Beside
-from tailor.tools.lockstep.task_sampler import sampler_of
+from tailor.tools.lockstep.task_sampler import TaskSampler, sampler_of
+
+PLACING = ("context", "context_start")  # methods that put an object there before a run
 
 
 @runtime_checkable
@@ -54,6 +56,22 @@ def object_sampler(domain: Domain) -> ObjectSampler:
         kind = type(sampler).__name__
         raise UsageError(f"the sampler {kind} of {domain.name} lacks `sample_among_objects` or `beside`, expected both")
     return sampler
+
+
+def check_sampler(domain: Domain, objects: int) -> None:
+    """Check that the domain's task sampler draws objects: some noted after each run, or, with 0, one before it.
+
+    Raises:
+      UsageError: It lacks a method for that, or the robot's package has no sampler.
+    """
+    if objects:
+        object_sampler(domain)
+        return
+    kind = type(sampler_of(domain))
+    lacking = [name for name in PLACING if getattr(kind, name, None) in (None, getattr(TaskSampler, name))]
+    if lacking:
+        lacks = " and ".join(f"`{name}`" for name in lacking)
+        raise UsageError(f"the sampler {kind.__name__} of {domain.name} lacks {lacks}, expected both")
 
 
 def runs_beside_objects(

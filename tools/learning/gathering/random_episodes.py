@@ -17,7 +17,7 @@ from tailor.models.episodes.episodes import Episode, part_bytes, store_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
-from tailor.tools.learning.gathering.beside_objects import object_sampler, runs_beside_objects
+from tailor.tools.learning.gathering.beside_objects import check_sampler, runs_beside_objects
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec, columns_of, draw
 from tailor.tools.learning.gathering.manifests import check_resumable, manifest_of
 from tailor.tools.lockstep import action_run
@@ -96,8 +96,8 @@ def prepare(spec: DataSetSpec, resume: bool) -> None:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or the robot's
         sampler draws no objects where some are asked for.
     """
-    if spec.objects:
-        object_sampler(domains.load(spec.domain))
+    if spec.beside:
+        check_sampler(domains.load(spec.domain), spec.objects)
     manifest = manifest_of(spec)
     check_resumable(spec.folder, manifest, resume)
     spec.folder.mkdir(parents=True, exist_ok=True)

@@ -12,9 +12,11 @@ from tailor.simnodes.agilo.scene import RAIL
 from tailor.tools.learning.gathering import beside_objects, random_episodes
 from tailor.tools.learning.gathering.beside_objects import runs_beside_objects
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.action_run import new_body, run_action
 from tailor.tools.lockstep.samplers import opponents
-from tailor.tools.lockstep.task_sampler import sampler_of
+from tailor.tools.lockstep.task_sampler import TaskSampler, sampler_of
+from tailor.tools.main import main
 
 DOMAIN = domains.load("soccer")
 ACTION = DOMAIN.actions["goToPose"]
@@ -64,6 +66,33 @@ def test_a_sampler_that_draws_no_objects_is_refused_before_anything_is_written(t
     with pytest.raises(UsageError, match="the sampler object of soccer lacks `sample_among_objects` or `beside`"):
         random_episodes.prepare(spec, resume=False)
     assert not (tmp_path / "goToPose").exists()
+
+
+class PlacesNone(TaskSampler):
+    """As a robot's package has it that declares a context, and no more than the defaults of a sampler."""
+
+
+class Bare:
+    """Not even derived from `TaskSampler`."""
+
+    def context(self, action, arguments, rng):
+        return np.zeros(3)
+
+
+@pytest.mark.parametrize(
+    ("sampler", "lacks"),
+    [
+        (PlacesNone, "PlacesNone of soccer lacks `context` and `context_start`"),
+        (Bare, "lacks `context_start`, expected"),
+    ],
+)
+def test_a_sampler_that_puts_no_object_there_is_refused_in_one_line(tmp_path, monkeypatch, capsys, sampler, lacks):
+    for module in (beside_objects, action_run):
+        monkeypatch.setattr(module, "sampler_of", lambda domain: sampler())
+    assert main(["gather", "agilo", "--beside-object", "--out", str(tmp_path / "data")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert lacks in line
+    assert not (tmp_path / "data").exists()
 
 
 def test_one_run_gives_many_episodes_with_one_object_each():
