@@ -117,6 +117,8 @@ def _faults(recipe: Recipe) -> Iterator[str]:
     yield from (
         f"{name} is {count}, expected at least {least}" for name, count, least in _counts(recipe) if count < least
     )
+    if recipe.objects > 0 and not recipe.beside:
+        yield f"objects is {recipe.objects}, expected none without `beside`, the number of runs beside them"
     yield from _repeated("random", [each.action for each in recipe.random])
     for each in recipe.rounds:
         if not each.scenarios:

@@ -37,6 +37,7 @@ examples:
 
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
 seed gives the same bits for any number of jobs, here and on a cluster."""
+POOL = 4  # situations per episode of --active
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -79,8 +80,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pool",
         type=at_least(1, "--pool"),
-        default=4,
-        help="--active: situations per episode (default: %(default)s)",
+        help=f"--active: situations per episode (default: {POOL})",
     )
     parser.add_argument(
         "--profile", default="", help="profile of the body, e.g. degraded (default: the one that ships)"
@@ -92,6 +92,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Gather; exit code 0, or 130 if interrupted."""
+    _refuse_ignored(arguments)
     name = random_episodes.domain_of(arguments.robot)
     check_package(name)
     check_profile(name, arguments.profile)
@@ -103,6 +104,14 @@ def run(arguments: argparse.Namespace) -> int:
         if chosen or arguments.recordings:
             return _from_runs(arguments, name, out)
         return _random(arguments, name, out)
+
+
+def _refuse_ignored(arguments: argparse.Namespace) -> None:
+    """Raise UsageError for flags that are without effect beside the others."""
+    if arguments.pool is not None and not arguments.active:
+        raise UsageError("--pool counts the situations of --active, expected none without it")
+    if arguments.zoo and not (arguments.active or arguments.on_policy):
+        raise UsageError("--zoo names the models that choose, expected none without --on-policy or --active")
 
 
 def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
@@ -164,7 +173,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.active:
         from tailor.tools.learning.gathering.active_episodes import Active, run_active
 
-        active = Active(domain, scenarios, arguments.episodes, arguments.pool, *where)
+        active = Active(domain, scenarios, arguments.episodes, arguments.pool or POOL, *where)
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
     policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where)
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)

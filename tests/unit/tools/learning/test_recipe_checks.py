@@ -4,7 +4,7 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import beside_objects
-from tailor.tools.learning.recipe import Recipe
+from tailor.tools.learning.recipe import Recipe, read_recipe
 from tailor.tools.learning.recipe_checks import check_recipe
 
 
@@ -14,3 +14,12 @@ def test_a_sampler_that_draws_no_objects_is_found_out_before_hours_of_other_epis
     with pytest.raises(UsageError, match=f"the sampler object of soccer lacks {lacks}"):
         check_recipe("agilo", Recipe(9, beside=1, objects=objects))
     check_recipe("agilo", Recipe(9))
+
+
+def test_a_number_of_objects_without_runs_beside_them_is_refused(tmp_path):
+    path = tmp_path / "recipe.toml"
+    path.write_text("episodes = 9\nobjects = 20")
+    with pytest.raises(UsageError, match=r"recipe.toml: objects is 20, expected none without `beside`"):
+        read_recipe(path)
+    path.write_text("episodes = 9\nobjects = 20\nbeside = 1")
+    assert read_recipe(path).objects == 20
