@@ -31,11 +31,11 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     actions = run_data_sets.modelled_actions(domain)
     for each in recipe.random:
         if each.action not in actions:
-            raise UsageError(f"recipe: random episodes of '{each.action}', expected one of: {', '.join(actions)}")
+            raise UsageError(f"random episodes of '{each.action}', expected one of: {', '.join(actions)}")
     for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)
     if needed and recipe.beside:
         check_sampler(domains.load(domain), recipe.objects)
     if needed and recipe.rounds and not recipe.beside:
-        raise UsageError(f"recipe: beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")
+        raise UsageError(f"beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")

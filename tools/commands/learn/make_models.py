@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from tailor.schemas.installed import robot_names
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.cli.number_checks import processes
 from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
@@ -54,10 +55,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _making(robot: str, arguments: argparse.Namespace) -> Making:
-    recipe = read_recipe(arguments.recipe or recipe_path(robot))
+    spec_of_robot(robot)  # raises UsageError if there is none
+    path = arguments.recipe or recipe_path(robot)
     command = f"tailor make-models {robot}" + (f" --recipe {arguments.recipe}" if arguments.recipe else "")
-    making = Making(robot, recipe, arguments.work, arguments.jobs, command)
-    check(making)  # of every robot, before the models of the first one are made
+    making = Making(robot, read_recipe(path), arguments.work, arguments.jobs, command)
+    try:
+        check(making)  # of every robot, before the models of the first one are made
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
     return making
 
 

@@ -6,6 +6,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import beside_objects
 from tailor.tools.learning.recipe import Recipe, read_recipe
 from tailor.tools.learning.recipe_checks import check_recipe
+from tailor.tools.main import main
 
 
 @pytest.mark.parametrize(("objects", "lacks"), [(0, "`context` and `context_start`"), (3, "`sample_among_objects` or")])
@@ -23,3 +24,21 @@ def test_a_number_of_objects_without_runs_beside_them_is_refused(tmp_path):
         read_recipe(path)
     path.write_text("episodes = 9\nobjects = 20\nbeside = 1")
     assert read_recipe(path).objects == 20
+
+
+@pytest.mark.parametrize(
+    ("robot", "text", "message"),
+    [
+        ("agilo", "[[random]]\naction = 'fly'\nepisodes = 3", "{path}: random episodes of 'fly', expected one of: "),
+        ("agilo", "profile = 'x'", "{path}: no profile 'x' of soccer's body, expected one of: "),
+        ("agilo", "[training]\nlearner = 'x'", "{path}: learner 'x' is unknown"),
+        ("r2d2", "", "no robot 'r2d2'"),
+    ],
+)
+def test_the_file_of_a_recipe_with_faults_is_named_first(tmp_path, capsys, robot, text, message):
+    path = tmp_path / "recipe.toml"
+    path.write_text(f"episodes = 9\n{text}")
+    assert main(["make-models", robot, "--recipe", str(path), "--work", str(tmp_path / "work")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"tailor make-models: {message.format(path=path)}")
+    assert not (tmp_path / "work").exists()
