@@ -11,6 +11,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
+from tailor.tools.learning.gathering.situations import MAX_SITUATIONS, too_many
 
 RECIPE = "recipe.toml"
 MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
@@ -31,6 +32,11 @@ class Round:
     scenarios: tuple[str, ...]
     episodes: int
     pool: int = 4
+
+    @property
+    def situations(self) -> int:
+        """Number of situations in which models choose."""
+        return self.episodes * (self.pool if self.source == "active" else len(self.scenarios))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +130,8 @@ def _faults(recipe: Recipe) -> Iterator[str]:
         if not each.scenarios:
             yield "rounds.scenarios is empty, expected at least one"
         yield from _repeated("rounds.scenarios", each.scenarios)
+        if each.situations > MAX_SITUATIONS:
+            yield f"rounds: {too_many(each.situations)}"
 
 
 def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:

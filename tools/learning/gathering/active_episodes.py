@@ -22,6 +22,7 @@ from tailor.tools.learning.gathering import data_set_spec
 from tailor.tools.learning.gathering.choosing_models import prepare_chosen
 from tailor.tools.learning.gathering.random_episodes import PART
 from tailor.tools.learning.gathering.refined_choices import Choice, refined_choices
+from tailor.tools.learning.gathering.situations import situations
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
@@ -59,8 +60,7 @@ class Active:
     @property
     def situations(self) -> list[tuple[str, int]]:
         """Scenario and seed of each situation."""
-        first = FIRST_SEED + 100_000 * self.seed
-        return [(self.scenarios[k % len(self.scenarios)], first + k) for k in range(self.pool * self.episodes)]
+        return situations(self.scenarios, FIRST_SEED, self.seed, self.pool * self.episodes)
 
 
 def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]:

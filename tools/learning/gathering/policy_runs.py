@@ -15,6 +15,7 @@ from tailor.models.episodes.episodes import Episode
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
 from tailor.tools.learning.gathering.run_data_sets import write
+from tailor.tools.learning.gathering.situations import situations
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 from tailor.tools.parallel.pool import completed
@@ -39,9 +40,7 @@ class Policy:
     @property
     def jobs(self) -> list[tuple[str, int]]:
         """Every run: scenario and a seed of its own, since scenarios of one seed share noise and the body's draws."""
-        first = FIRST_SEED + 100_000 * self.seed
-        count = self.runs * len(self.scenarios)
-        return [(self.scenarios[k % len(self.scenarios)], first + k) for k in range(count)]
+        return situations(self.scenarios, FIRST_SEED, self.seed, self.runs * len(self.scenarios))
 
 
 def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:

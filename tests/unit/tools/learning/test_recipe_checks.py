@@ -26,6 +26,19 @@ def test_a_number_of_objects_without_runs_beside_them_is_refused(tmp_path):
     assert read_recipe(path).objects == 20
 
 
+ROUND = "episodes = 9\n[[rounds]]\nsource = '{}'\nscenarios = ['a', 'b']\nepisodes = {}"
+
+
+@pytest.mark.parametrize(("source", "most"), [("active", 25_000), ("on-policy", 50_000)])
+def test_rounds_never_reach_the_seeds_of_the_next_one(tmp_path, source, most):
+    path = tmp_path / "recipe.toml"
+    path.write_text(ROUND.format(source, most))
+    assert read_recipe(path).rounds[0].situations == 100_000
+    path.write_text(ROUND.format(source, most + 1))
+    with pytest.raises(UsageError, match=r"recipe.toml: rounds: 10000[24] situations .*expected at most 100000"):
+        read_recipe(path)
+
+
 @pytest.mark.parametrize(
     ("robot", "text", "message"),
     [

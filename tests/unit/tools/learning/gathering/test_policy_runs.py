@@ -3,6 +3,10 @@
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
+from tailor.schemas.errors import UsageError
+from tailor.tools.learning.gathering.active_episodes import Active
 from tailor.tools.learning.gathering.policy_runs import Policy
 
 
@@ -14,3 +18,25 @@ def test_every_run_has_a_seed_of_its_own():
     assert len({seed for _, seed in jobs}) == len(jobs) == 18
     later = Policy("arm", scenarios, 6, 8, "", Path()).jobs
     assert {seed for _, seed in jobs}.isdisjoint(seed for _, seed in later)
+
+
+def test_situations_of_two_seeds_never_meet():
+    """The rounds of a recipe have one seed after another."""
+    scenarios = ("letter-A", "letter-B")
+    runs = [Policy("arm", scenarios, 50_000, seed, "", Path()).jobs for seed in (7, 8)]
+    choices = [Active("arm", scenarios, 25_000, 4, seed, "", Path()).situations for seed in (7, 8)]
+    for earlier, later in (runs, choices):
+        assert len(earlier) == 100_000
+        assert earlier[-1][1] + 1 == later[0][1]
+
+
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        lambda: Policy("arm", ("letter-A",), 100_001, 7, "", Path()).jobs,
+        lambda: Active("arm", ("letter-A",), 30_000, 4, 7, "", Path()).situations,
+    ],
+)
+def test_more_situations_than_lie_between_two_seeds_are_refused(drawn):
+    with pytest.raises(UsageError, match=r"1[02]000[01] situations .*expected at most 100000: more would be those of"):
+        drawn()
