@@ -94,7 +94,8 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
     """Check that a data set can be gathered into a folder, or resumed there.
 
     Raises:
-      UsageError: The folder holds another data set or a larger one, or the same one without `resume`.
+      UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or one of
+        selected episodes, which does not grow.
     """
     if not (folder / MANIFEST).exists():
         return
@@ -103,8 +104,9 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
             f"{folder}: holds episodes already (expected another --out, or --resume to continue simulated runs)"
         )
     existing = read_manifest(folder)
+    selected = "situations" in manifest  # episodes of the largest disagreement among a fixed number of situations
     for key, value in manifest.items():
-        if key not in COUNTS and existing.get(key) != value:
+        if (key not in COUNTS or (selected and key == "episodes")) and existing.get(key) != value:
             raise UsageError(f"{folder}: was gathered with {key} = {existing.get(key)!r}, expected {value!r} to resume")
     if manifest["episodes"] < existing.get("episodes", 0):  # resuming must not delete finished episodes
         raise UsageError(

@@ -63,6 +63,15 @@ def test_another_pool_is_refused(gathered: Path, capsys) -> None:
     assert "situations = 4, expected 6" in capsys.readouterr().err
 
 
+def test_more_episodes_of_the_same_situations_are_refused(gathered: Path, capsys) -> None:
+    """The last part, which was short, would stay short."""
+    more = ["--episodes", "4", "--pool", "1"]
+    assert main(["gather", "powercube", *FLAGS, *more, "--out", str(gathered), "--resume"]) == 2
+    assert "episodes = 2, expected 4 to resume" in capsys.readouterr().err
+    data = read_data_set(gathered / "reach")
+    assert len(data.episodes) == data.manifest["episodes"] == 2
+
+
 def test_seeds_of_situations_are_none_of_other_streams() -> None:
     from tailor.tools.learning.gathering.data_set_spec import (
         EVALUATION_STREAM,
