@@ -20,6 +20,7 @@ from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
+from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.hub.checksums import checked_files
 from tailor.tools.hub.client import download, upload
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
@@ -149,8 +150,7 @@ def _install(source: Path, models: list[Path], zoo: Path, robot: str, replace: b
 
 def _refuse(existing: list[Path]) -> None:
     if existing:
-        more = f" and {len(existing) - 1} more" if len(existing) > 1 else ""
-        raise UsageError(f"{existing[0]}{more}: exists, expected an empty place, or --replace")
+        raise UsageError(f"{abbreviated(list(map(str, existing)), 1)}: exists, expected an empty place, or --replace")
 
 
 def _swap(new: Path, old: Path) -> None:

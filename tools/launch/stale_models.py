@@ -9,6 +9,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of
 from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
+from tailor.tools.cli.word_lists import abbreviated
 
 NAMED = 3  # files that the warning names
 
@@ -34,8 +35,7 @@ def stale_models_warning(domain: str, zoo: str) -> str:
     files = sorted({file for each in changed.values() for file in each})
     if not stale:
         return ""
-    more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
     return (
-        f"models of {', '.join(stale)} were learned with another {', '.join(files[:NAMED])}{more}: "
+        f"models of {', '.join(stale)} were learned with another {abbreviated(files, NAMED)}: "
         f"`tailor models check {robot}` tells whether they are stale"
     )

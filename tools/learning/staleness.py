@@ -17,6 +17,7 @@ from tailor.models.cards.card import Card
 from tailor.models.episodes.sources import end_of
 from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
+from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.lockstep.bodies import body_of
@@ -38,7 +39,9 @@ def staleness(card: Card) -> str:
     if not changed:
         return ""
     differing = differing_episodes(card)
-    return f"{_listed(changed)} changed since its episodes were simulated, and {differing}" if differing else ""
+    return (
+        f"{abbreviated(changed, NAMED)} changed since its episodes were simulated, and {differing}" if differing else ""
+    )
 
 
 def differing_episodes(card: Card) -> str:
@@ -63,8 +66,3 @@ def differing_episodes(card: Card) -> str:
 
 
 todays_files = lru_cache(maxsize=4)(episode_files)  # a check compares several cards
-
-
-def _listed(names: list[str]) -> str:
-    shown = ", ".join(names[:NAMED])
-    return shown if len(names) <= NAMED else f"{shown} and {len(names) - NAMED} more"

@@ -17,6 +17,7 @@ from rich.markup import escape
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.viewer.decisions import Decision, decisions_of, executed, in_force
 from tailor.tools.viewer.event_fields import number
@@ -47,9 +48,8 @@ class ExplainedDecision:
     def title(self) -> str:
         """Time and names of the actions."""
         actions = self.decision.subgoals.actions
-        names = ", then ".join(a.action + " (asserted subgoal)" * a.asserted for a in actions[:MAX_NAMED])
-        more = f" and {len(actions) - MAX_NAMED} more" if len(actions) > MAX_NAMED else ""
-        return f"{self.decision.at_s:.1f} s: {names}{more}"
+        names = [action.action + " (asserted subgoal)" * action.asserted for action in actions]
+        return f"{self.decision.at_s:.1f} s: {abbreviated(names, MAX_NAMED, ', then ')}"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
