@@ -51,13 +51,22 @@ def with_kairos(
     """
     search = Search(domain, problem, settings)
     result = search.advance(_HeadStart(limits, search, DURATIVE_HEAD_START))
-    if result is None or result.status in ("limit", "unsupported"):
-        found = external(kairos_command(math.inf, settings.tolerance_s), texts, domain, problem, limits.left_s)
-        if found.plan is not None:
-            generated, visited = search.counts
-            return replace(found, generated=generated, visited=visited), "kairos"
-        result = _searched(search, limits)
-    return result, ""
+    if result is not None and result.status not in ("limit", "unsupported"):
+        return result, ""
+    if limits.reason:
+        return _searched(search, limits), ""
+    found = external(kairos_command(math.inf, settings.tolerance_s), texts, domain, problem, limits.left_s)
+    if found.plan is not None:
+        generated, visited = search.counts
+        return replace(found, generated=generated, visited=visited), "kairos"
+    return _with_reason(_searched(search, limits), found), ""
+
+
+def _with_reason(ours: Result, kairos: Result) -> Result:
+    """The result of the search; where that reached a limit, with the reason why kairos-planner found no plan either."""
+    if ours.plan is not None or ours.status == "unsolvable":
+        return ours
+    return replace(ours, reason=f"{ours.reason}; kairos-planner: {kairos.reason}")
 
 
 def anytime(search: AnytimeSearch, limits: Limits) -> Result:
@@ -114,9 +123,11 @@ def anytime_beside_kairos(
             time.sleep(_POLL_S)
     finally:
         child.kill()
-    theirs = None if decided else linked_answer(child, domain, problem).plan
+    answer = None if decided else linked_answer(child, domain, problem)
+    theirs = None if answer is None else answer.plan
     value = math.inf if theirs is None else quality(theirs, problem)
     if theirs is None or value >= search.value:
+        ours = ours if answer is None or limits.interrupted else _with_reason(ours, answer)
         return _reported(ours, search, limits), ""
     _report(search.measure, value, theirs, "by kairos-planner")
     return _reported(Result("solved", theirs, "", *search.counts), search, limits), "kairos"

@@ -10,7 +10,7 @@ from tailor.runtime.processes import planner_process
 from tailor.tools.benchmarks.execution.durative_plans import durative_problem_text
 from tailor.tools.benchmarks.planning import read, texts
 from tailor.tools.plan_search.limits import Limits
-from tailor.tools.plan_search.sources import anytime_beside_kairos
+from tailor.tools.plan_search.sources import anytime_beside_kairos, with_kairos
 
 
 def planned(problem_text, limit_s):
@@ -45,3 +45,22 @@ def test_nobody_waits_for_kairos_if_no_plan_is_better(monkeypatch):
     plan, planner = planned(texts("kitchen-durative-s1")[1], 30.0)
     assert (len(plan.steps), planner) == (4, "")
     assert time.monotonic() - began < 20
+
+
+@pytest.mark.parametrize("plan", [with_kairos, anytime_beside_kairos])
+def test_where_the_search_has_no_plan_either_the_reason_of_kairos_is_told(monkeypatch, plan):
+    failing = ["sh", "-c", "echo 'out of luck'; exit 3"]
+    monkeypatch.setattr(planner_process, "named_planner", lambda _: failing)
+    pair = (texts("kitchen-durative-s1")[0], durative_problem_text(8))
+    problem = read(*pair)
+    result, planner = plan(pair, problem.domain, problem, Settings(), Limits(0.3))
+    assert (result.plan, planner) == (None, "")
+    assert result.reason == "no plan within 0.3 s; kairos-planner: the planner ended with code 3: 'out of luck'"
+
+
+def test_no_planner_starts_after_the_time_limit(monkeypatch):
+    monkeypatch.setattr(planner_process, "named_planner", lambda _: pytest.fail("started"))
+    pair = texts("kitchen-durative-s1")
+    problem = read(*pair)
+    result, _ = with_kairos(pair, problem.domain, problem, Settings(), Limits(0.0))
+    assert result.reason == "no plan within 0 s"
