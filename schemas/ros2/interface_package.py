@@ -6,9 +6,11 @@ dataclasses: the first line of the docstring, and the comment behind each field.
 
 from __future__ import annotations
 
+import argparse
 import inspect
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from tailor import __version__
@@ -17,7 +19,8 @@ from tailor.schemas.packages.ros_names import PACKAGE, ros_type
 from tailor.schemas.ros2 import service
 from tailor.schemas.typesystem import own_types
 
-FOLDER = Path(__file__).resolve().parents[2] / "ros2" / PACKAGE  # in the repository
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "ros2" / PACKAGE  # in the repository
 FIELD = re.compile(r"^    (\w+): .*?  # (.+)$", re.MULTILINE)
 MANIFEST = """\
 <?xml version="1.0"?>
@@ -94,5 +97,22 @@ def write(folder: Path = FOLDER) -> None:
         path.write_text(text, encoding="utf-8")
 
 
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the package into the folder that the arguments name, or into the repository; exit code 0, or 2."""
+    parser = argparse.ArgumentParser(prog="interface_package", description="Write the ROS 2 interface package.")
+    parser.add_argument("folder", type=Path, nargs="?", help="default: that of the repository")
+    folder = parser.parse_args(arguments).folder
+    if folder is None and not (ROOT / "pyproject.toml").is_file():
+        print(f"interface_package: {ROOT} is an installation, not the repository: expected a FOLDER", file=sys.stderr)
+        return 2
+    try:
+        write(folder or FOLDER)
+    except OSError as error:
+        where = f"{error.filename}: {error.strerror}"
+        print(f"interface_package: {where}, expected a folder that can be written", file=sys.stderr)
+        return 2
+    return 0
+
+
 if __name__ == "__main__":
-    write(*map(Path, sys.argv[1:2]))
+    sys.exit(main())

@@ -5,8 +5,8 @@ import sys
 from xml.etree import ElementTree
 
 from tailor import __version__
-from tailor.schemas.ros2 import service
-from tailor.schemas.ros2.interface_package import FOLDER, files, write
+from tailor.schemas.ros2 import interface_package, service
+from tailor.schemas.ros2.interface_package import FOLDER, files, main, write
 
 
 def content(folder):
@@ -23,6 +23,22 @@ def test_the_command_writes_into_any_workspace_and_removes_what_is_no_longer_a_t
     command = [sys.executable, "-m", "tailor.schemas.ros2.interface_package", tmp_path]
     subprocess.run(command, check=True)
     assert content(tmp_path) == files()
+
+
+def test_an_installation_is_never_written_into(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(interface_package, "ROOT", tmp_path)
+    monkeypatch.setattr(interface_package, "FOLDER", tmp_path / "ros2")
+    assert main([]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{tmp_path} is an installation, not the repository: expected a FOLDER" in line
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_written_is_told_in_one_line(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main([str(tmp_path / "file")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"interface_package: {tmp_path / 'file'}: File exists, expected a folder that can be written"
 
 
 def test_all_is_plain_ascii_for_the_generators_of_ros():
