@@ -200,12 +200,14 @@ def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[
     """Actions to gather: the requested ones, or all that have a duration model, or `beside` objects a context.
 
     Raises:
-      UsageError: The domain lacks a requested action, or it has no context.
+      UsageError: The domain lacks a requested action, or it has no context; or none has one.
     """
     declared = domains.load(domain).actions
     for action in requested:
         random_episodes.check_action(domain, action, beside)
     modelled = {each.duration_model.split("/")[0] for each in declared.values() if each.context or not beside}
+    if not modelled:
+        raise UsageError(f"no action of {domain} has a context of objects, expected one to gather beside them")
     return list(dict.fromkeys(requested)) or sorted(modelled)
 
 

@@ -134,6 +134,7 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
         (["agilo", "--profile", "x"], "no profile 'x' of soccer's body, expected one of: nominal, degraded"),
         (["agilo", "--profile", "degraded", "--from", "a.mcap"], "expected none with --from"),
+        (["powercube", "--beside-object"], "no action of arm has a context of objects, expected one to gather beside"),
         (["agilo", "--pool", "4"], "--pool counts the situations of --active, expected none without it"),
         (["agilo", "--pool", "2", "--on-policy", "approach"], "--pool counts the situations of --active"),
         (["agilo", "--zoo", "x"], "--zoo names the models that choose, expected none without --on-policy or --active"),
