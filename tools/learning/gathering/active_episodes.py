@@ -21,7 +21,7 @@ from tailor.models.episodes.episodes import Episode, write_part
 from tailor.tools.learning.gathering import data_set_spec
 from tailor.tools.learning.gathering.choosing_models import prepare_chosen
 from tailor.tools.learning.gathering.random_episodes import PART
-from tailor.tools.learning.gathering.refined_choices import Choice, refined_choices
+from tailor.tools.learning.gathering.refined_choices import Choice, read_choices, refined_choices
 from tailor.tools.learning.gathering.situations import situations
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
@@ -125,8 +125,7 @@ def _pool_path(active: Active, first: int) -> Path:
 
 def _pool(active: Active) -> list[Choice]:
     paths = [_pool_path(active, first) for first in range(0, len(active.situations), CHUNK)]
-    rows = [row for path in paths for row in json.loads(path.read_text())]
-    return [Choice(data_set, action, tuple(arguments), std_s) for data_set, action, arguments, std_s in rows]
+    return [choice for path in paths for choice in read_choices(path)]
 
 
 def _part(active: Active, data_set: str, first: int) -> Path:

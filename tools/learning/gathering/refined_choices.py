@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from tailor.executive.core.state import Output
 from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.interfaces.action import Action
 from tailor.executive.replay import RecordedTick
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals
+from tailor.schemas.parsed_files import read_json
 from tailor.simnodes.body import Body
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models
@@ -28,6 +31,20 @@ class Choice:
     action: str
     arguments: tuple[float, ...]
     std_s: float
+
+
+def read_choices(path: Path) -> list[Choice]:
+    """Choices that `active_episodes` has stored.
+
+    Raises:
+      UsageError: The file is damaged.
+    """
+    expected = "choices of situations (remove it, and --resume refines them again)"
+    rows = read_json(path, expected)
+    try:
+        return [Choice(str(name), str(action), tuple(map(float, row)), float(std)) for name, action, row, std in rows]
+    except (TypeError, ValueError):
+        raise UsageError(f"{path}: has another shape, expected {expected}") from None
 
 
 class _DecidedError(Exception):

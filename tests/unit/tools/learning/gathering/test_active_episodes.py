@@ -1,6 +1,7 @@
 """Active gathering: the optimiser's choices on which the models disagree most, the same bits however interrupted."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,17 @@ def test_more_episodes_of_the_same_situations_are_refused(gathered: Path, capsys
     assert "episodes = 2, expected 4 to resume" in capsys.readouterr().err
     data = read_data_set(gathered / "reach")
     assert len(data.episodes) == data.manifest["episodes"] == 2
+
+
+@pytest.mark.parametrize("content", [b"", b"\0\xff", b"[[1]]", b"null", b'[["reach", "reach", [0.0], null]]'])
+def test_a_damaged_file_of_choices_is_refused_in_one_line(gathered: Path, tmp_path: Path, capsys, content) -> None:
+    shutil.copytree(gathered, tmp_path / "out")
+    (pool,) = (tmp_path / "out").glob("pool-*.json")
+    pool.write_bytes(content)
+    assert main(["gather", "powercube", *FLAGS, "--out", str(tmp_path / "out"), "--resume"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"tailor gather: {pool}: ")
+    assert "expected choices of situations (remove it, and --resume refines them again)" in line
 
 
 def test_seeds_of_situations_are_none_of_other_streams() -> None:
