@@ -20,15 +20,18 @@ def learned_beside(domain: str) -> list[str]:
 
 
 def check_recipe(robot: str, recipe: Recipe) -> None:
-    """Check a recipe: names of the profile, actions and scenarios, and that rounds can choose.
+    """Check a recipe: names of the profile, actions and scenarios, numbers, and that rounds can choose.
 
     Raises:
-      UsageError: The robot has none of a name, or a sampler that draws no objects where some are wanted; or the recipe
-        has rounds, and gathers nothing beside objects where the executive chooses by models of success beside them.
+      UsageError: Too many episodes; the robot has none of a name, or a sampler that draws no objects where some are
+        wanted; or the recipe has rounds, and gathers nothing beside objects where the executive chooses by models of
+        success beside them.
     """
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
     actions = run_data_sets.modelled_actions(domain)
+    for count in (recipe.episodes, recipe.beside, *(each.episodes for each in recipe.random)):
+        random_episodes.check_number(count)
     for each in recipe.random:
         if each.action not in actions:
             raise UsageError(f"random episodes of '{each.action}', expected one of: {', '.join(actions)}")

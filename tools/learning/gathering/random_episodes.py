@@ -24,6 +24,7 @@ from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
 
+MAX_EPISODES = 1_000_000  # of a data set: the names of parts have six digits, and those of more would be in no order
 PART = 20  # episodes in a part: the most that a kill -9 loses, per process
 
 
@@ -48,6 +49,16 @@ def check_action(domain: str, action: str, beside: bool = False) -> None:
     if beside and declared[action].context is None:
         known = ", ".join(name for name, each in declared.items() if each.context is not None) or "none has one"
         raise UsageError(f"action '{action}' of {domain} has no context of objects (actions with one: {known})")
+
+
+def check_number(count: int) -> None:
+    """Check a number of random episodes.
+
+    Raises:
+      UsageError: It is beyond what can be stored.
+    """
+    if count > MAX_EPISODES:
+        raise UsageError(f"{count} random episodes, expected at most {MAX_EPISODES}")
 
 
 def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episode:
@@ -94,8 +105,9 @@ def prepare(spec: DataSetSpec, resume: bool) -> None:
 
     Raises:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or the robot's
-        sampler draws no objects where some are asked for.
+        sampler draws no objects where some are asked for; or there are too many episodes.
     """
+    check_number(spec.episodes)
     if spec.beside:
         check_sampler(domains.load(spec.domain), spec.objects)
     manifest = manifest_of(spec)

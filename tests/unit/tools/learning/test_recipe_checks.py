@@ -43,6 +43,7 @@ def test_rounds_never_reach_the_seeds_of_the_next_one(tmp_path, source, most):
     ("robot", "text", "message"),
     [
         ("agilo", "[[random]]\naction = 'fly'\nepisodes = 3", "{path}: random episodes of 'fly', expected one of: "),
+        ("agilo", "beside = 1000001", "{path}: 1000001 random episodes, expected at most 1000000"),
         ("agilo", "profile = 'x'", "{path}: no profile 'x' of soccer's body, expected one of: "),
         ("agilo", "[training]\nlearner = 'x'", "{path}: learner 'x' is unknown"),
         ("r2d2", "", "no robot 'r2d2'"),

@@ -127,6 +127,8 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["r2d2"], "no robot 'r2d2'"),
         (["agilo", "fly"], "no action 'fly'"),
         (["agilo", "--episodes", "0"], "--episodes is 0, expected at least 1"),
+        (["agilo", "--episodes", "1000001"], "1000001 random episodes, expected at most 1000000"),
+        (["agilo", "--episodes", "9223372036854775807"], "9223372036854775807 random episodes, expected at most"),
         (["agilo", "--episodes", "many"], "--episodes is 'many', expected a whole number"),
         (["agilo", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
         (["agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
