@@ -239,6 +239,8 @@ def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
         ([DOMAIN, DURATIVE[1]], "expected"),
         ([DOMAIN, PROBLEM, "-f", "FOO"], "flaw order 'FOO': expected a name"),
         ([DOMAIN, PROBLEM, "-h", "FOO"], "ranking 'FOO' is unknown"),
+        ([DOMAIN, PROBLEM, "-l", "9" * 5000], "--limit: expected a number of plans of at least 1"),
+        ([DOMAIN, PROBLEM, "--memory-limit", "9" * 5000], "--memory-limit: expected a whole number of MB"),
         ([DOMAIN, PROBLEM, "-l", "0"], "--limit: expected a number of plans of at least 1"),
         ([DOMAIN, PROBLEM, "-w", "-1"], "expected a finite weight of at least 0, found -1.0"),
         ([DOMAIN, PROBLEM, "-w", "inf"], "expected a finite weight"),

@@ -5,6 +5,7 @@ The first line gives their mean difference from the model, and R², over its epi
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -63,10 +64,10 @@ def tree_number(text: str) -> int:
     Raises:
       UsageError: The text has no such number.
     """
-    number = text.rpartition(":")[2]
-    if not number.isdecimal() or int(number) < 1:
-        raise UsageError(f"--of {text}: expected the number of a tree, from 1, as in bag:3")
-    return int(number)
+    read = re.fullmatch(r"(?:(?:bag|forest):)?([0-9]{1,9})", text)
+    if read is None or int(read[1]) < 1:
+        raise UsageError(f"--of {text}: expected the number of a tree, from 1, as in bag:3 or forest:3")
+    return int(read[1])
 
 
 def _own(card: Card, boxes: TreeBoxes | None, tree: int, features: NDArray[np.float32]) -> tuple[list[str], Array]:

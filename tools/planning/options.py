@@ -12,8 +12,10 @@ from tailor import __version__
 from tailor.executive.planning import EngineName, FlawOrder, Settings
 from tailor.executive.planning.flaws.flaw_orders import NAMED
 from tailor.executive.planning.flaws.ranking import NAMES
+from tailor.executive.planning.pddl.syntax.errors import shortened
 from tailor.schemas.errors import UsageError
 
+MAX_DIGITS = 18  # of a number: Python refuses to read thousands
 MAX_PLANS = 1_000_000  # about 1 GB of memory
 GROUND_LIMIT = 300_000  # steps: two seconds of CPU, more than a robot may take
 
@@ -206,12 +208,17 @@ def _megabytes(text: str) -> float:
     """A limit of memory in MB."""
     if text == "unlimited":
         return float("inf")
-    if not text.isdecimal() or int(text) < 1:
-        raise UsageError(f"--memory-limit: expected a whole number of MB or 'unlimited', found '{text}'")
+    if not _is_positive(text):
+        raise UsageError(f"--memory-limit: expected a whole number of MB or 'unlimited', found '{shortened(text)}'")
     return float(text)
 
 
 def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise UsageError(f"--limit: expected a number of plans of at least 1 or 'unlimited', found '{text}'")
+    if not _is_positive(text):
+        raise UsageError(f"--limit: expected a number of plans of at least 1 or 'unlimited', found '{shortened(text)}'")
     return int(text)
+
+
+def _is_positive(text: str) -> bool:
+    """Whether a text is a whole number of at least 1, of so many digits that Python reads it."""
+    return text.isdecimal() and len(text) <= MAX_DIGITS and int(text) >= 1

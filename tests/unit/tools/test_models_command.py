@@ -112,6 +112,13 @@ def test_rules_of_any_single_tree_can_be_asked_for(name: str, capsys) -> None:
     assert "there is no tree 99" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("tree", ["3x", "0", "tree:3", "bag:1:2", "bag:٣", "9" * 5000])
+def test_what_names_no_tree_is_refused_in_one_line(tree: str, capsys) -> None:
+    assert main(["models", "rules", "b21/reach", "--of", tree]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith("expected the number of a tree, from 1, as in bag:3 or forest:3")
+
+
 def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["gather", "agilo", "goToPose", "--episodes", "48", "--jobs", "1", "--json"]) == 0
