@@ -139,7 +139,9 @@ def _run(arguments: list[str]) -> int:
 
 
 def _report(line: str) -> None:
-    """Print an error; red on a terminal, unless NO_COLOR is set (no-color.org)."""
+    """Print an error; red on a terminal, unless NO_COLOR is set (no-color.org). A closed standard error takes none."""
+    if sys.stderr is None:
+        return  # print would take the standard output instead
     coloured = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
     print(f"\x1b[31m{line}\x1b[0m" if coloured else line, file=sys.stderr)
 

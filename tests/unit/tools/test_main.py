@@ -138,3 +138,11 @@ def test_an_interrupt_while_modules_load_prints_no_traceback():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (130, "")
+
+
+def test_a_closed_standard_error_changes_no_exit_code_and_nothing_that_is_printed(monkeypatch, capsys):
+    """As of a service that closed it."""
+    monkeypatch.setattr(sys, "stderr", None)
+    assert main(["plan", "nowhere.pddl"]) == 2
+    assert main(["plann"]) == 2
+    assert capsys.readouterr().out == ""
