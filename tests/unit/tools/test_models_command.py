@@ -119,6 +119,13 @@ def test_what_names_no_tree_is_refused_in_one_line(tree: str, capsys) -> None:
     assert line.endswith("expected the number of a tree, from 1, as in bag:3 or forest:3")
 
 
+def test_a_seed_that_no_learner_takes_is_refused_before_training(tmp_path: Path, capsys) -> None:
+    """Scikit-learn takes 32 bits: it refused the seed of boosted trees in the midst of the training."""
+    assert main(["train", "agilo", "--data", str(tmp_path), "--zoo", str(tmp_path), "--seed", str(2**32)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == "tailor train: --seed is 4294967296, expected 0 to 1000000000"
+
+
 def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["gather", "agilo", "goToPose", "--episodes", "48", "--jobs", "1", "--json"]) == 0

@@ -13,8 +13,10 @@ from rich.table import Column, Table
 
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS
 from tailor.models.cards.card_shape import TEST_FIGURES
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
+from tailor.tools.learning.recipe import MAX_SEED
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
@@ -67,6 +69,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Train; exit code 0."""
+    if arguments.seed > MAX_SEED:
+        raise UsageError(f"--seed is {arguments.seed}, expected 0 to {MAX_SEED}")
     request = TrainingRequest(
         arguments.robot,
         target_zoo(arguments.zoo, arguments.robot),
