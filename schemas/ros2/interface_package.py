@@ -97,6 +97,14 @@ def write(folder: Path = FOLDER) -> None:
         path.write_text(text, encoding="utf-8")
 
 
+def _may_write(folder: Path) -> bool:
+    """Whether a folder is empty, missing, or holds this package: messages of another one would be removed."""
+    manifest = folder / "package.xml"
+    if manifest.is_file():
+        return f"<name>{PACKAGE}</name>" in manifest.read_text(encoding="utf-8", errors="replace")
+    return not folder.is_dir() or next(folder.iterdir(), None) is None
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the package into the folder that the arguments name, or into the repository; exit code 0, or 2."""
     parser = argparse.ArgumentParser(prog="interface_package", description="Write the ROS 2 interface package.")
@@ -104,6 +112,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     folder = parser.parse_args(arguments).folder
     if folder is None and not (ROOT / "pyproject.toml").is_file():
         print(f"interface_package: {ROOT} is an installation, not the repository: expected a FOLDER", file=sys.stderr)
+        return 2
+    if folder is not None and not _may_write(folder):
+        print(f"interface_package: {folder} holds other files, expected {PACKAGE} or none", file=sys.stderr)
         return 2
     try:
         write(folder or FOLDER)

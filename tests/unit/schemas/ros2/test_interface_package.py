@@ -4,6 +4,8 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+import pytest
+
 from tailor import __version__
 from tailor.schemas.ros2 import interface_package, service
 from tailor.schemas.ros2.interface_package import FOLDER, files, main, write
@@ -18,7 +20,7 @@ def test_the_files_in_the_repository_are_those_that_the_command_writes():
 
 
 def test_the_command_writes_into_any_workspace_and_removes_what_is_no_longer_a_type(tmp_path):
-    (tmp_path / "msg").mkdir()
+    write(tmp_path)
     (tmp_path / "msg" / "Gone.msg").write_text("bool gone\n")
     command = [sys.executable, "-m", "tailor.schemas.ros2.interface_package", tmp_path]
     subprocess.run(command, check=True)
@@ -39,6 +41,18 @@ def test_a_folder_that_cannot_be_written_is_told_in_one_line(tmp_path, capsys):
     assert main([str(tmp_path / "file")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line == f"interface_package: {tmp_path / 'file'}: File exists, expected a folder that can be written"
+
+
+@pytest.mark.parametrize("manifest", [None, "<package><name>camera_msgs</name></package>"])
+def test_messages_of_another_package_are_never_removed(manifest, tmp_path, capsys):
+    message = tmp_path / "msg" / "Image.msg"
+    message.parent.mkdir()
+    message.touch()
+    if manifest is not None:
+        (tmp_path / "package.xml").write_text(manifest)
+    assert main([str(tmp_path)]) == 2
+    assert capsys.readouterr().err.startswith(f"interface_package: {tmp_path} holds other files, expected")
+    assert message.is_file()
 
 
 def test_all_is_plain_ascii_for_the_generators_of_ros():
