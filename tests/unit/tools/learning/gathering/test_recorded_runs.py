@@ -125,7 +125,8 @@ def test_an_action_of_which_the_executive_s_own_words_are_damaged_is_left_out(
 
 def test_a_goal_that_cannot_be_read_is_never_replaced_by_the_one_before(gather, tmp_path: Path) -> None:
     whole, _, _ = gather(RECORDING)
-    counts, _, _ = gather(copy_with_damage(tmp_path / "last.mcap", "exec/subgoals", {2}))
+    last = sum(recorded.key == "exec/subgoals" for recorded in open_recording(RECORDING).messages()) - 1
+    counts, _, _ = gather(copy_with_damage(tmp_path / "last.mcap", "exec/subgoals", {last}))
     assert counts == {**whole, "dribbleBall": 0}
 
 
