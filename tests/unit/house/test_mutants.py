@@ -19,6 +19,10 @@ def test_a_mutant_fits_the_code(mutant):
     assert problem(mutant) == ""
 
 
+def test_the_readme_counts_them():
+    assert re.search(r"(\d+) hand-made mistakes", (ROOT / "README.md").read_text())[1] == str(len(MUTANTS))
+
+
 def test_no_two_mutants_are_the_same_mistake():
     mistakes = [(mutant.file, mutant.mutate((ROOT / mutant.file).read_text())) for mutant in MUTANTS]
     assert len(set(mistakes)) == len(mistakes)
