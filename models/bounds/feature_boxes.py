@@ -41,8 +41,7 @@ class FeatureBoxes:
     def ends_of_slopes(self, middle: Floats, reach: Floats, slopes: list[Floats]) -> Ends:
         """As `ends`, with a further reach, for slopes of each feature that differ by box, (k, out, n)."""
         apart = len(self.radius)
-        for slope, radius in zip(slopes, self.radius, strict=False):
-            reach += np.abs(slope) * radius
+        reach = reach + sum(np.abs(slope) * radius for slope, radius in zip(slopes, self.radius, strict=False))
         if not len(self.corners):
             return middle - reach, middle + reach
         bend = sum(slope[:, :, None] * corner for slope, corner in zip(slopes[apart:], self.corners, strict=True))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count, takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,6 @@ from tailor.models.features.intervals import Span
 from tailor.models.fitted_trees import tree_names
 
 Floats = NDArray[np.float32]
-LAYERS = 3
 OPERATIONS = 5  # for each neuron of a network, about: they take as long as so many comparisons of leaves
 WIDE = 0.02  # m, rad, m/s: in wider boxes knowing the deviation costs more time than it gains
 CHUNK = 64  # boxes: their arrays fit into the cache
@@ -28,7 +28,7 @@ CHUNK = 64  # boxes: their arrays fit into the cache
 
 @dataclass(frozen=True)
 class NetworkBounds:
-    """The bounds of the mean of k networks with two rectified hidden layers, clipped to [low, high]."""
+    """The bounds of the mean of k networks with rectified hidden layers, clipped to [low, high]."""
 
     weights: tuple[Floats, ...]  # of each layer, (k, out, in)
     bias: tuple[Floats, ...]  # (k, out, 1)
@@ -83,47 +83,55 @@ class NetworkBounds:
         size = farthest
         for weights, bias in zip(self.weights, self.bias, strict=True):
             size = np.abs(weights) @ size + np.abs(bias)
-        return np.float32(4 * ROUNDING) * size[:, 0]
+        return np.float32((len(self.weights) + 1) * ROUNDING) * size[:, 0]
 
     def _outputs(self, boxes: FeatureBoxes) -> tuple[Floats, Floats]:
         """Middle and reach of each network's output with its rounding error, (k, n) each."""
-        _, second = self._layers(boxes)
-        low = np.maximum(second.lower, 0)
-        centre = np.float32(0.5) * (low + second.high)
-        weights, bias = self.weights[2], self.bias[2]
-        reach = (np.abs(weights) @ (second.high - centre))[:, 0]
-        return (weights @ centre + bias)[:, 0], reach + self._rounding(np.abs(boxes.middle) + boxes.radius)
-
-    def _layers(self, boxes: FeatureBoxes) -> tuple[Rectified, Rectified]:
-        """Both layers of rectifiers over the boxes."""
-        inputs = self.weights[0] @ boxes.middle + self.bias[0]
-        first = Rectified(*boxes.ends(inputs, self.weights[0]))
-        return first, Rectified(*self._second_inputs(first, inputs, boxes))
+        middle, reach = _spread(self._layers(boxes)[-1], self.weights[-1], self.bias[-1])
+        return middle[:, 0], reach[:, 0] + self._rounding(np.abs(boxes.middle) + boxes.radius)
 
     def _plane(self, boxes: FeatureBoxes, sign: np.float32) -> tuple[Floats, Floats]:
-        (w1, w2, w3), (b1, b2, b3) = self.weights, self.bias
-        first, second = self._layers(boxes)
-        factor, constant = second.below(sign / np.float32(len(w3)) * w3.transpose(0, 2, 1))
-        constant = sign * b3.mean() + constant + _total(factor, b2)
-        factor, offset = first.below(w2.transpose(0, 2, 1) @ factor)
-        constant += offset + _total(factor, b1)
-        slopes: Floats = w1.reshape(-1, len(boxes.middle)).T @ factor.reshape(-1, len(constant))  # of all networks
+        factor = sign / np.float32(len(self.bias[-1])) * self.weights[-1].transpose(0, 2, 1)
+        constant = np.full(boxes.middle.shape[1], sign * self.bias[-1].mean())
+        hidden = list(zip(self._layers(boxes), self.weights, self.bias, strict=False))
+        for layer, weights, bias in hidden[:0:-1]:
+            factor, offset = layer.below(factor)
+            constant += offset + _total(factor, bias)
+            factor = weights.transpose(0, 2, 1) @ factor
+        first, weights, bias = hidden[0]
+        factor, offset = first.below(factor)
+        constant += offset + _total(factor, bias)
+        slopes: Floats = weights.reshape(-1, len(boxes.middle)).T @ factor.reshape(-1, len(constant))  # of all networks
         return constant, slopes
 
-    def _second_inputs(self, first: Rectified, inputs: Floats, boxes: FeatureBoxes) -> tuple[Floats, Floats]:
-        """Both ends of the second layer's inputs: two relaxations of the first layer, intersected.
+    def _layers(self, boxes: FeatureBoxes) -> list[Rectified]:
+        """All layers of rectifiers over the boxes.
 
-        Each output apart lies between the ends of its range; as a function of the features it lies in a strip.
+        Each but the first has the intersection of two ranges. In one, each output before it lies between its ends; in
+        the other, its inputs lie in strips: `width` around functions that are linear in the features.
         """
-        w1, w2, b2 = self.weights[0], self.weights[1], self.bias[1]
-        half, size = np.float32(0.5), np.abs(w2)
-        low: Floats = np.maximum(first.lower, 0)
-        centre: Floats = half * (low + first.high)
-        middle, reach = w2 @ centre + b2, size @ (first.high - centre)
-        width: Floats = half * first.offset
-        slopes = [w2 @ (w1[:, :, feature, None] * first.above) for feature in range(w1.shape[2])]
-        strip = boxes.ends_of_slopes(w2 @ (first.above * inputs + width) + b2, size @ width, slopes)
-        return np.maximum(middle - reach, strip[0]), np.minimum(middle + reach, strip[1])
+        middle = self.weights[0] @ boxes.middle + self.bias[0]
+        layer = Rectified(*boxes.ends(middle, self.weights[0]))
+        width = np.zeros_like(middle)
+        slopes = [self.weights[0][:, :, feature, None] for feature in range(self.weights[0].shape[2])]
+        layers = [layer]
+        for weights, bias in zip(self.weights[1:-1], self.bias[1:-1], strict=True):
+            half = np.float32(0.5) * layer.offset
+            middle = weights @ (layer.above * middle + half) + bias
+            width = np.abs(weights) @ (layer.above * width + half)
+            slopes = [weights @ (layer.above * slope) for slope in slopes]
+            strip = boxes.ends_of_slopes(middle, width, slopes)
+            centre, reach = _spread(layer, weights, bias)
+            layer = Rectified(np.maximum(centre - reach, strip[0]), np.minimum(centre + reach, strip[1]))
+            layers.append(layer)
+        return layers
+
+
+def _spread(layer: Rectified, weights: Floats, bias: Floats) -> tuple[Floats, Floats]:
+    """Middle and reach of the next layer's inputs, (k, out, n), if each output lies anywhere between its ends."""
+    low: Floats = np.maximum(layer.lower, 0)
+    centre: Floats = np.float32(0.5) * (low + layer.high)
+    return weights @ centre + bias, np.abs(weights) @ (layer.high - centre)
 
 
 def _boxes(features: tuple[Span, ...]) -> tuple[FeatureBoxes, tuple[int, ...]]:
@@ -146,13 +154,15 @@ def network_bounds(graph: Contents) -> NetworkBounds | None:
     """Bounds of the networks of an ONNX model; None if it has none."""
     if tree_names.NETWORK_LOW not in graph.constants:
         return None
-    weights, bias = (
-        tuple(np.asarray(graph.constants[name.format(layer)], np.float32) for layer in range(LAYERS))
-        for name in (tree_names.NETWORK_WEIGHTS, tree_names.NETWORK_BIAS)
-    )
+    weights, bias = (_of_layers(graph, name) for name in (tree_names.NETWORK_WEIGHTS, tree_names.NETWORK_BIAS))
     low, high = (float(graph.constants[name].ravel()[0]) for name in (tree_names.NETWORK_LOW, tree_names.NETWORK_HIGH))
     share = graph.constants.get(tree_names.MEMBER_WEIGHT.format(0))
     return NetworkBounds(weights, bias, low, high, 0.0 if share is None else float(share.ravel()[0]))
+
+
+def _of_layers(graph: Contents, name: str) -> tuple[Floats, ...]:
+    found = (graph.constants.get(name.format(layer)) for layer in count())
+    return tuple(np.asarray(each, np.float32) for each in takewhile(lambda each: each is not None, found))
 
 
 # BLAS maps a buffer of 32 MB at its first product of some size: here, before memory is locked, it stays unused

@@ -28,17 +28,21 @@ class Layer:
 
 
 class NetworkRegressor(RegressionModel):
-    """The mean of networks with two rectified hidden layers, clipped to the range of the training targets.
+    """The mean of networks with rectified hidden layers, clipped to the range of the training targets.
 
     Args:
       networks: Number of networks; they differ by initial weights and batches.
-      width: Neurons in each hidden layer.
+      depth: Hidden layers.
+      width: Neurons in each of them.
       decay: Decay of the weights, see `network_training.train`.
       random_state: Seed of weights and batches.
     """
 
-    def __init__(self, networks: int = 4, width: int = 64, decay: float = 0.3, random_state: int = 0) -> None:
+    def __init__(
+        self, networks: int = 4, depth: int = 3, width: int = 48, decay: float = 0.3, random_state: int = 0
+    ) -> None:
         self.networks = networks
+        self.depth = depth
         self.width = width
         self.decay = decay
         self.random_state = random_state
@@ -55,7 +59,7 @@ class NetworkRegressor(RegressionModel):
         rows, targets = ((X - centre) / scale).astype(np.float32), ((y - mean) / spread).astype(np.float32)
         rng = np.random.default_rng(self.random_state)
         with threadpool_limits(1):  # two threads wait for each other on small products, and may sum in another order
-            fitted = train(rows, targets, self.networks, self.width, self.decay, rng)
+            fitted = train(rows, targets, self.networks, (self.width,) * self.depth, self.decay, rng)
         self.layers_ = _unscaled(fitted, centre, scale, mean, spread)
         self.low_, self.high_ = np.float32(y.min()), np.float32(y.max())
         return self

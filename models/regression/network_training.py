@@ -23,7 +23,7 @@ TINY = np.float32(1e-8)
 
 
 class Networks:
-    """k networks with two rectified hidden layers: `layers[j]` holds weights (k, in, out) and bias (k, 1, out).
+    """k networks with rectified hidden layers: `layers[j]` holds weights (k, in, out) and bias (k, 1, out).
 
     Args:
       networks: Number of networks.
@@ -66,18 +66,25 @@ class Networks:
         return [flat[a:b].reshape(shape) for a, b, shape in zip(ends, ends[1:], shapes, strict=False)]
 
 
-def train(rows: Floats, targets: Floats, networks: int, width: int, decay: float, rng: np.random.Generator) -> Networks:
+def train(
+    rows: Floats,
+    targets: Floats,
+    networks: int,
+    hidden: tuple[int, ...],
+    decay: float,
+    rng: np.random.Generator,
+) -> Networks:
     """Networks fitted to standardised rows (n, f) and targets (n,).
 
     Args:
       rows: Features with mean 0 and deviation 1.
       targets: Targets, in the same form.
       networks: Number of networks; each has its own initial weights and batches.
-      width: Neurons in each hidden layer.
+      hidden: Neurons in each hidden layer.
       decay: Share of the weights that is lost per unit of learning rate (Loshchilov 2019).
       rng: Draws weights and batches.
     """
-    model = Networks(networks, (rows.shape[1], width, width, 1), rng)
+    model = Networks(networks, (rows.shape[1], *hidden, 1), rng)
     first, second = np.zeros_like(model.flat), np.zeros_like(model.flat)
     for step in range(STEPS):
         drawn = rng.integers(0, len(rows), (networks, min(BATCH, len(rows))))

@@ -13,9 +13,9 @@ from tailor.models.features.intervals import Span
 FEATURES = 3
 
 
-def drawn_networks(rng: np.random.Generator, networks: int = 3, width: int = 8) -> NetworkBounds:
+def drawn_networks(rng: np.random.Generator, networks: int = 3, width: int = 8, hidden: int = 2) -> NetworkBounds:
     """Networks of random weights, a few of them zero; the mean is hardly ever clipped."""
-    sizes = ((width, FEATURES), (width, width), (1, width))
+    sizes = ((width, FEATURES), *[(width, width)] * (hidden - 1), (1, width))
     weights = tuple(
         (rng.normal(0, 1.5 / np.sqrt(size[1]), (networks, *size)) * (rng.random((networks, *size)) < 0.9)).astype("f4")
         for size in sizes
@@ -60,7 +60,7 @@ def extreme(
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-4, 0.1, 1.0, 5.0]))
 def test_no_network_leaves_its_bounds(seed, size):
     rng = np.random.default_rng(seed)
-    bounds = drawn_networks(rng)
+    bounds = drawn_networks(rng, hidden=int(rng.integers(1, 4)))
     lower = rng.uniform(-3, 3, FEATURES)
     upper = lower + size * rng.choice([0.0, 0.5, 1.0], FEATURES)
     least, most = extreme(bounds, lower, upper, rng)
@@ -95,7 +95,7 @@ def test_bounds_are_close_to_the_minimum_in_small_boxes():
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-4, 5e-3, 0.9 * network_bounds.WIDE, 0.1, 1.0, 5.0]))
 def test_no_standard_deviation_over_the_networks_leaves_its_bounds(seed, size):
     rng = np.random.default_rng(seed)
-    bounds = drawn_networks(rng)
+    bounds = drawn_networks(rng, hidden=int(rng.integers(1, 4)))
     lower = rng.uniform(-3, 3, FEATURES)
     upper = lower + size * rng.random(FEATURES)
     inside = lower + rng.choice([0.0, 0.5, 1.0, 0.2], (400, FEATURES)) * (upper - lower)
