@@ -24,8 +24,8 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
 
     Raises:
       UsageError: Too many episodes; the robot has none of a name, or a sampler that draws no objects where some are
-        wanted; or the recipe has rounds, and gathers nothing beside objects where the executive chooses by models of
-        success beside them.
+        wanted; or the recipe gathers beside objects where no model of success is learned beside them, or has rounds,
+        and gathers nothing there, where the executive chooses by such models.
     """
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
@@ -38,7 +38,9 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)
-    if needed and recipe.beside:
+    if recipe.beside and not needed:
+        raise UsageError(f"beside is {recipe.beside}, expected 0: no action has a model of success beside an object")
+    if recipe.beside:
         check_sampler(domains.load(domain), recipe.objects)
     if needed and recipe.rounds and not recipe.beside:
         raise UsageError(f"beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")

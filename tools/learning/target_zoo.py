@@ -22,10 +22,12 @@ def target_zoo(zoo: Path | None, robot: str, own: Path | None = None) -> Path:
       `zoo` if named; otherwise `own`, if it lies in a checkout and is writable; otherwise the user's data folder.
 
     Raises:
-      UsageError: No folder is named, and `own` is part of an installation with models of the robot, which come before
+      UsageError: `zoo` is a file; or no folder is named, and `own` is part of an installation with models of the robot, which come before
         those of the user.
     """
     if zoo is not None:
+        if zoo.exists() and not zoo.is_dir():
+            raise UsageError(f"--zoo {zoo} is a file, expected a folder")
         return zoo
     own = own or (package_models_folder(robot) if robot in robot_names() else ZOO)
     if _is_in_checkout(own) and os.access(own if own.exists() else own.parent, os.W_OK):

@@ -38,6 +38,7 @@ examples:
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
 seed gives the same bits for any number of jobs, here and on a cluster."""
 POOL = 4  # situations per episode of --active
+SIMULATED = {"episodes": 1000, "jobs": 2, "seed": 7, "profile": "", "resume": False, "on": None}  # not of recordings
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -47,10 +48,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("robot", help="name of the robot, e.g. agilo")
     parser.add_argument("actions", nargs="*", metavar="ACTION", help="actions to run (default: all that have a model)")
     count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
-    parser.add_argument("--episodes", type=count, default=1000, help="number per action (default: %(default)s)")
-    parser.add_argument("--jobs", type=processes, default=2, help="number of processes (default: %(default)s)")
+    parser.add_argument("--episodes", type=count, help="number per action (default: %(default)s)")
+    parser.add_argument("--jobs", type=processes, help="number of processes (default: %(default)s)")
     configure_cluster(parser)
-    parser.add_argument("--seed", type=seed, default=7, help="random seed (default: %(default)s)")
+    parser.add_argument("--seed", type=seed, help="random seed (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
     other = parser.add_mutually_exclusive_group()
     other.add_argument(
@@ -82,12 +83,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=at_least(1, "--pool"),
         help=f"--active: situations per episode (default: {POOL})",
     )
-    parser.add_argument(
-        "--profile", default="", help="profile of the body, e.g. degraded (default: the one that ships)"
-    )
+    parser.add_argument("--profile", help="profile of the body, e.g. degraded (default: the one that ships)")
     parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
     parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
+    parser.set_defaults(**SIMULATED)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -112,6 +112,9 @@ def _refuse_ignored(arguments: argparse.Namespace) -> None:
         raise UsageError("--pool counts the situations of --active, expected none without it")
     if arguments.zoo and not (arguments.active or arguments.on_policy):
         raise UsageError("--zoo names the models that choose, expected none without --on-policy or --active")
+    for name, default in SIMULATED.items() if arguments.recordings else ():
+        if getattr(arguments, name) != default:
+            raise UsageError(f"--{name} is for simulated runs, expected none with --from")
 
 
 def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
@@ -156,10 +159,6 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
     if arguments.recordings:
-        if arguments.profile:
-            raise UsageError("--profile chooses a simulated body, expected none with --from")
-        if arguments.resume:
-            raise UsageError("--resume continues simulated runs, expected none with --from")
         extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         for line in extracted.left_out:
             Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)

@@ -198,6 +198,7 @@ def test_a_recipe_that_is_not_utf_8_is_refused(tmp_path: Path) -> None:
         ("agilo", "[training]\nfeatures = 'joints'", "approachBall: arguments are x y phi v xg"),
         ("powercube", ROUND.format("'nope'"), "no scenario"),
         ("agilo", ROUND.format("'approach'"), "beside is 0, expected runs of goToPose beside objects"),
+        ("powercube", "beside = 4", "beside is 4, expected 0: no action has a model of success beside an object"),
     ],
 )
 def test_names_in_a_recipe_are_checked_before_anything_is_gathered(
@@ -209,6 +210,15 @@ def test_names_in_a_recipe_are_checked_before_anything_is_gathered(
     assert main(["make-models", robot, *flags]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert message in line
+    assert not (tmp_path / "work").exists()
+
+
+def test_a_file_in_the_place_of_a_zoo_is_refused_before_anything_is_gathered(tmp_path: Path, capsys) -> None:
+    zoo = tmp_path / "zoo"
+    zoo.touch()
+    assert main(["make-models", "powercube", "--zoo", str(zoo), "--work", str(tmp_path / "work")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith(f"--zoo {zoo} is a file, expected a folder")
     assert not (tmp_path / "work").exists()
 
 

@@ -140,7 +140,9 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--pool", "4"], "--pool counts the situations of --active, expected none without it"),
         (["agilo", "--pool", "2", "--on-policy", "approach"], "--pool counts the situations of --active"),
         (["agilo", "--zoo", "x"], "--zoo names the models that choose, expected none without --on-policy or --active"),
-        (["agilo", "--resume", "--from", "a.mcap"], "--resume continues simulated runs, expected none with --from"),
+        (["agilo", "--resume", "--from", "a.mcap"], "--resume is for simulated runs, expected none with --from"),
+        (["agilo", "--from", "a.mcap", "--episodes", "9"], "--episodes is for simulated runs, expected none with"),
+        (["agilo", "--from", "a.mcap", "--seed", "9"], "--seed is for simulated runs, expected none with --from"),
     ],
 )
 def test_bad_input_is_told_before_anything_starts(wrong: list[str], message: str, tmp_path: Path, capsys) -> None:
