@@ -1,4 +1,4 @@
-"""A weighted mean of learners, chosen by cross-validation: a single learner, or their stack."""
+"""A weighted mean of learners, chosen by cross-validation: a single learner, or the stack of bag and network."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import episode_indices
-from tailor.models.regression.network import NetworkRegressor
+from tailor.models.regression.network import DEEP, NetworkRegressor
 from tailor.models.regression.out_of_fold import held_out_parts, out_of_fold
 from tailor.models.trees.model_tree import BaggedModelTrees
 from tailor.models.trees.regression_model import RegressionModel
@@ -22,15 +22,17 @@ STACK = "stack"
 MEMBERS: Mapping[str, Callable[[int], RegressionModel]] = {
     "bag": lambda seed: BaggedModelTrees(random_state=seed),
     "network": lambda seed: NetworkRegressor(random_state=seed),
+    "deep-network": lambda seed: NetworkRegressor(**DEEP, random_state=seed),
 }
 # in the order of their cost; a costlier one must be better by this share of the error
-CANDIDATES = ("bag", "network", STACK)
+STACKED = ("bag", "network")
+CANDIDATES = (*STACKED, STACK)
 MIN_GAIN = 0.03
 MIN_WEIGHT = 0.02  # a member with less is left out: it costs more than it gains
 
 
 class BlendedRegressor(RegressionModel):
-    """The best of bag, network and their stack by cross-validation over episodes (Wolpert 1992).
+    """The best of some members, or of bag, network and their stack, by cross-validation over episodes (Wolpert 1992).
 
     Every candidate is a weighted mean of the members. The standard deviation is that of the mixture: the members' own,
     and their disagreement.
@@ -78,7 +80,7 @@ class BlendedRegressor(RegressionModel):
 
     def _choose(self, X: Array, y: Array, episodes: NDArray[np.int64]) -> None:
         """Set the weights, the errors of all candidates, and the chosen one's predictions out of fold."""
-        names = [name for name in MEMBERS if name in self.candidates or STACK in self.candidates]
+        names = STACKED if STACK in self.candidates else tuple(self.candidates)
         seed = self.random_state
         apart = {name: out_of_fold(partial(MEMBERS[name], seed), X, y, episodes, seed) for name in names}
         means = np.column_stack([mean for mean, _ in apart.values()])

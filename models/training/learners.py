@@ -19,7 +19,7 @@ from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
 from tailor.models.regression.blend import STACK, BlendedRegressor
 from tailor.models.regression.calibrated import CalibratedRegressor
-from tailor.models.regression.network import NetworkRegressor
+from tailor.models.regression.network import DEEP, NetworkRegressor
 from tailor.models.training.sklearn_adapters import SklearnClassifier, SklearnRegressor
 from tailor.models.trees.distillation import DistilledModelTree
 from tailor.models.trees.model_tree import BaggedModelTrees, ModelTreeRegressor
@@ -61,6 +61,8 @@ DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
     "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
     "network": lambda seed: NetworkRegressor(random_state=seed),
+    "deep-network": lambda seed: NetworkRegressor(**DEEP, random_state=seed),
+    "best-network": lambda seed: BlendedRegressor(("network", "deep-network"), random_state=seed),
     "stack": lambda seed: BlendedRegressor((STACK,), random_state=seed),
     "best": lambda seed: BlendedRegressor(random_state=seed),
 }
@@ -72,8 +74,10 @@ SINGLE_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "distilled-tree": lambda _: ModelTreeRegressor("linear"),
     "linear": lambda _: ModelTreeRegressor("linear"),
     "network": lambda seed: NetworkRegressor(networks=1, random_state=seed),
+    "deep-network": lambda seed: NetworkRegressor(**DEEP, networks=1, random_state=seed),
 }
-MEMBERS_OF = {"stack": ("bag", "network"), "best": ("bag", "network")}
+# `best-network` may become deep; one of the usual shape stands for both
+MEMBERS_OF = {"stack": ("bag", "network"), "best": ("bag", "network"), "best-network": ("network",)}
 SUCCESS_LEARNERS: Mapping[str, Callable[[int], Any]] = {
     "distilled-forest": lambda seed: DistilledForest(cost_ratio=COST_RATIO, random_state=seed),
     "forest": lambda seed: FailureForest(cost_ratio=COST_RATIO, random_state=seed),

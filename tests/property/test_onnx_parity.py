@@ -86,6 +86,7 @@ def test_durations_agree(learner, examples) -> None:
 
 BLENDS = {
     "network": BlendedRegressor(weights={"network": 1.0}),
+    "deep-network": BlendedRegressor(weights={"deep-network": 1.0}),
     "stack": BlendedRegressor(weights={"bag": 0.4, "network": 0.6}),
     "bag": BlendedRegressor(weights={"bag": 1.0}),
 }

@@ -22,8 +22,8 @@ def target_zoo(zoo: Path | None, robot: str, own: Path | None = None) -> Path:
       `zoo` if named; otherwise `own`, if it lies in a checkout and is writable; otherwise the user's data folder.
 
     Raises:
-      UsageError: `zoo` is a file; or no folder is named, and `own` is part of an installation with models of the robot, which come before
-        those of the user.
+      UsageError: `zoo` is a file; or no folder is named, and `own` is part of an installation with models of the
+        robot, which come before those of the user.
     """
     if zoo is not None:
         if zoo.exists() and not zoo.is_dir():

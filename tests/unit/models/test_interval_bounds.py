@@ -18,6 +18,9 @@ SHAPE = (1, 1, 1)
 LIMITS = np.array([[-3.5, -2.25, -np.pi, 0] * 2, [3.5, 2.25, np.pi, 0.6] * 2])
 
 
+BLENDS = [{"bag": 1.0}, {"network": 1.0}, {"deep-network": 1.0}, {"bag": 0.4, "network": 0.6}]
+
+
 def fitted(weights: dict[str, float]) -> bytes:
     rng = np.random.default_rng(1)
     features = projective(rng.uniform(*LIMITS, (600, 8)))
@@ -26,7 +29,7 @@ def fitted(weights: dict[str, float]) -> bytes:
     return export_duration(learner, projective, {}).SerializeToString()
 
 
-@pytest.fixture(scope="module", params=[{"bag": 1.0}, {"network": 1.0}, {"bag": 0.4, "network": 0.6}], ids=str)
+@pytest.fixture(scope="module", params=BLENDS, ids=str)
 def model(request):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(network_training, "STEPS", 500)

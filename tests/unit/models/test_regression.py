@@ -8,6 +8,7 @@ from tailor.models.regression import blend, network_training
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import CalibratedRegressor
 from tailor.models.regression.network import NetworkRegressor
+from tailor.models.training.learners import make_learner
 
 
 @pytest.fixture(autouse=True)
@@ -41,6 +42,18 @@ def test_a_costlier_learner_must_gain_enough() -> None:
     assert blend._best({"bag": 1.0, "network": 0.98, "stack": 0.975}) == "bag"
     assert blend._best({"bag": 1.0, "network": 0.9, "stack": 0.89}) == "network"
     assert blend._best({"bag": 1.0, "network": 1.2, "stack": 0.9}) == "stack"
+
+
+def test_networks_of_two_shapes_can_be_chosen_from(monkeypatch) -> None:
+    monkeypatch.setattr(network_training, "STEPS", 300)
+    features, targets = stepped(400, 5)
+    learner = make_learner("duration", "best-network", 1).fit(features, targets)
+    assert list(learner.cv_mae_) == ["network", "deep-network"]
+    assert learner.chosen_ == blend._best(learner.cv_mae_)
+    assert learner.weights_ == {learner.chosen_: 1.0}
+    monkeypatch.setattr(blend, "MIN_GAIN", -1.0)  # now any later one is chosen
+    deep = make_learner("duration", "best-network", 1).fit(features, targets)
+    assert [layer.weights.shape[1] for layer in deep.members_["deep-network"].layers_] == [48, 48, 48, 1]
 
 
 def test_the_stack_is_a_convex_mean_and_keeps_its_weights_when_frozen() -> None:
