@@ -104,13 +104,13 @@ def test_a_drive_beside_furniture_and_a_grip_are_certified_within_three_percent(
     assert proof.gap_pct < 3.0
 
 
-def searched_and_proven(cost, chosen) -> tuple[Any, Certificate]:
+def searched_and_proven(cost, chosen, checks: int = 45) -> tuple[Any, Certificate]:
     solver = solver_for(cost, chosen, np.random.default_rng(0), np.empty((0, cost.ranges.count)))
     solver.advance(CheckBudget(25))
     assert solver.best is not None
     proof = certificate(cost, solver.best, chosen)
     assert isinstance(proof, Certificate)
-    proof.advance(CheckBudget(45))
+    proof.advance(CheckBudget(checks))
     return solver, proof
 
 
@@ -180,7 +180,7 @@ def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, seed)
 def test_no_choice_costs_less_than_a_proof_with_models_that_ship_states(models, task):
     chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
     cost = cases(models, TASKS)["8 free"][task].objective(models, chosen)
-    solver, proof = searched_and_proven(cost, chosen)
+    solver, proof = searched_and_proven(cost, chosen, chosen.certify_checks)
     rng = np.random.default_rng(task)
     near = solver.best + 0.02 * cost.ranges.width * rng.standard_normal((2000, cost.ranges.count))
     assert 0.9 * solver.value < proof.bound
