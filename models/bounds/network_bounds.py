@@ -93,7 +93,7 @@ class NetworkBounds:
     def _plane(self, boxes: FeatureBoxes, sign: np.float32) -> tuple[Floats, Floats]:
         factor = sign / np.float32(len(self.bias[-1])) * self.weights[-1].transpose(0, 2, 1)
         constant = np.full(boxes.middle.shape[1], sign * self.bias[-1].mean())
-        hidden = list(zip(self._layers(boxes), self.weights, self.bias, strict=False))
+        hidden = list(zip(self._layers(boxes), self.weights, self.bias, strict=False))  # without the last, linear one
         for layer, weights, bias in hidden[:0:-1]:
             factor, offset = layer.below(factor)
             constant += offset + _total(factor, bias)
