@@ -217,6 +217,11 @@ def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package
     assert target_zoo(None, "pedelec", own) == own
 
 
+def test_help_names_all_learners_and_no_others() -> None:
+    assert sorted(train.DURATION_LEARNERS.split(", ")) == sorted(DURATION_LEARNERS)
+    assert sorted(train.SUCCESS_LEARNERS.split(", ")) == sorted(SUCCESS_LEARNERS)
+
+
 CARDS = sorted(path for path in runtime.ZOO.glob("*/*/*.card.json") if path.parent.name != "refinement")
 
 

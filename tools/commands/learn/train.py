@@ -27,7 +27,9 @@ from tailor.tools.learning.training_request import (
 from tailor.tools.learning.training_run import train_models
 
 # named here so that --help loads no learning library
-DURATION_LEARNERS = "best, stack, bag, robust, distilled-tree, linear, m5, boosting, network"
+DURATION_LEARNERS = (
+    "best, best-network, stack, bag, robust, distilled-tree, linear, m5, boosting, network, deep-network"
+)
 SUCCESS_LEARNERS = "distilled-forest, forest, distilled-tree, tree, boosting, network, networks, svm, constant"
 
 EPILOG = """\
