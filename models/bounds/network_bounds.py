@@ -91,17 +91,14 @@ class NetworkBounds:
         return middle[:, 0], reach[:, 0] + self._rounding(np.abs(boxes.middle) + boxes.radius)
 
     def _plane(self, boxes: FeatureBoxes, sign: np.float32) -> tuple[Floats, Floats]:
-        factor = sign / np.float32(len(self.bias[-1])) * self.weights[-1].transpose(0, 2, 1)
+        networks, features = len(self.bias[-1]), len(boxes.middle)
+        factor = np.full((networks, 1, 1), sign / np.float32(networks))
         constant = np.full(boxes.middle.shape[1], sign * self.bias[-1].mean())
-        hidden = list(zip(self._layers(boxes), self.weights, self.bias, strict=False))  # without the last, linear one
-        for layer, weights, bias in hidden[:0:-1]:
-            factor, offset = layer.below(factor)
+        hidden = zip(self._layers(boxes)[::-1], self.bias[-2::-1], self.weights[:0:-1], strict=True)
+        for layer, bias, after in hidden:
+            factor, offset = layer.below(after.transpose(0, 2, 1) @ factor)
             constant += offset + _total(factor, bias)
-            factor = weights.transpose(0, 2, 1) @ factor
-        first, weights, bias = hidden[0]
-        factor, offset = first.below(factor)
-        constant += offset + _total(factor, bias)
-        slopes: Floats = weights.reshape(-1, len(boxes.middle)).T @ factor.reshape(-1, len(constant))  # of all networks
+        slopes: Floats = self.weights[0].reshape(-1, features).T @ factor.reshape(-1, len(constant))  # of all networks
         return constant, slopes
 
     def _layers(self, boxes: FeatureBoxes) -> list[Rectified]:

@@ -17,6 +17,7 @@ from tailor.models.failure.distilled_forest import DistilledForest
 from tailor.models.failure.distilled_tree import DistilledFailureTree
 from tailor.models.failure.failure_forest import FailureForest
 from tailor.models.failure.failure_tree import FailureTree
+from tailor.models.regression.blend import MEMBERS as BLENDED
 from tailor.models.regression.blend import STACK, BlendedRegressor
 from tailor.models.regression.calibrated import CalibratedRegressor
 from tailor.models.regression.network import DEEP, NetworkRegressor
@@ -54,14 +55,14 @@ def _svm(seed: int) -> Any:
 
 
 DURATION_LEARNERS: Mapping[str, Callable[[int], Any]] = {
-    "bag": lambda seed: BaggedModelTrees(random_state=seed),
+    "bag": BLENDED["bag"],
     "robust": lambda seed: BaggedModelTrees(random_state=seed, **ROBUST),
     "distilled-tree": lambda seed: DistilledModelTree(random_state=seed),
     "linear": lambda seed: ModelTreeRegressor("linear", random_state=seed),
     "m5": lambda seed: ModelTreeRegressor("m5", random_state=seed),
     "boosting": lambda seed: SklearnRegressor(GradientBoostingRegressor(**BOOSTING, random_state=seed)),
-    "network": lambda seed: NetworkRegressor(random_state=seed),
-    "deep-network": lambda seed: NetworkRegressor(**DEEP, random_state=seed),
+    "network": BLENDED["network"],
+    "deep-network": BLENDED["deep-network"],
     "best-network": lambda seed: BlendedRegressor(("network", "deep-network"), random_state=seed),
     "stack": lambda seed: BlendedRegressor((STACK,), random_state=seed),
     "best": lambda seed: BlendedRegressor(random_state=seed),
