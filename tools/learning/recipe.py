@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
@@ -109,7 +109,7 @@ def read_recipe(path: Path) -> Recipe:
     if "episodes" not in table:
         raise UsageError(f"{path}: lacks `episodes`, the number of random episodes of each action")
     recipe = from_table(Recipe, table, str(path))
-    faults = list(_faults(recipe))
+    faults = [*_faults(recipe), *_without_effect(table)]
     if faults:
         raise UsageError(f"{path}: {'; '.join(faults)}")
     return recipe
@@ -132,6 +132,12 @@ def _faults(recipe: Recipe) -> Iterator[str]:
         yield from _repeated("rounds.scenarios", each.scenarios)
         if each.situations > MAX_SITUATIONS:
             yield f"rounds: {too_many(each.situations)}"
+
+
+def _without_effect(table: dict[str, Any]) -> Iterator[str]:
+    """Entries that nothing heeds; the recipe itself no longer distinguishes them from defaults."""
+    if any("pool" in each and each["source"] != "active" for each in table.get("rounds", ())):
+        yield "rounds.pool: only active rounds draw several situations for each episode"
 
 
 def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:

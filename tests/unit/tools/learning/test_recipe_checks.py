@@ -39,6 +39,15 @@ def test_rounds_never_reach_the_seeds_of_the_next_one(tmp_path, source, most):
         read_recipe(path)
 
 
+def test_a_pool_is_for_active_rounds_only(tmp_path):
+    path = tmp_path / "recipe.toml"
+    path.write_text(ROUND.format("active", 1) + "\npool = 3")
+    assert read_recipe(path).rounds[0].pool == 3
+    path.write_text(ROUND.format("on-policy", 1) + "\npool = 3")
+    with pytest.raises(UsageError, match=r"recipe.toml: rounds.pool: only active rounds draw"):
+        read_recipe(path)
+
+
 @pytest.mark.parametrize(
     ("robot", "text", "message"),
     [
