@@ -24,19 +24,19 @@ FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with sma
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """In what a replica differs from the recipe of the robot's models.
+    """In what replicas differ from the recipe of the robot's models, but for seeds.
 
     Attributes:
       domain: Name of the domain.
       scenarios: Of the on-policy round.
-      episodes: Random ones of each action.
-      runs: Of the on-policy round, a scenario; 0: none.
+      episodes: Random ones of each action; `None`: the recipe's.
+      runs: Of a single on-policy round, a scenario; 0: no round; `None`: the rounds of the recipe.
     """
 
     domain: str
-    scenarios: tuple[str, ...]
-    episodes: int
-    runs: int
+    scenarios: tuple[str, ...] = ()
+    episodes: int | None = None
+    runs: int | None = None
 
     @property
     def robot(self) -> str:
@@ -48,10 +48,10 @@ def configure_replicas(parser: argparse.ArgumentParser) -> None:
     """The flags of evaluations that train models of their own."""
     parser.add_argument("--models", type=at_least(0, "--models"), default=0, metavar="K",
                         help="judge K models more, each gathered for and trained anew, and their mean")  # fmt: skip
-    parser.add_argument("--model-episodes", type=at_least(40, "--model-episodes"), default=3000, metavar="N",
-                        help="random episodes an action for each of them (default %(default)s)")  # fmt: skip
-    parser.add_argument("--model-runs", type=at_least(0, "--model-runs"), default=200, metavar="N",
-                        help="runs a scenario of its on-policy round (default %(default)s; 0: none)")  # fmt: skip
+    parser.add_argument("--model-episodes", type=at_least(40, "--model-episodes"), metavar="N",
+                        help="random episodes an action for each of them (default: as the robot's recipe)")  # fmt: skip
+    parser.add_argument("--model-runs", type=at_least(0, "--model-runs"), metavar="N",
+                        help="runs a scenario of one on-policy round, not the recipe's rounds (0: none)")  # fmt: skip
 
 
 def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
@@ -69,10 +69,13 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     Raises:
       UsageError: The robot's models have no recipe, or see `make`.
     """
-    rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
     shipped = read_recipe(recipe_path(recipe.robot))
     training = replace(shipped.training, seed=FIRST_SEED + number)  # a set differs in all that is drawn
-    own = replace(shipped, episodes=recipe.episodes, random=(), seed=training.seed, rounds=rounds, training=training)
+    own = replace(shipped, seed=training.seed, training=training)
+    if recipe.episodes is not None:
+        own = replace(own, episodes=recipe.episodes, random=())
+    if recipe.runs is not None:
+        own = replace(own, rounds=(Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ())
     making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
     show(make(making), False, {}, f"model {number}: ")
     return making

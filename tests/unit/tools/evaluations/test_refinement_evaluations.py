@@ -26,6 +26,7 @@ from tailor.tools.evaluations.refinement import ablations, figure1, figure11, re
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired
+from tailor.tools.learning.recipe import read_recipe, recipe_path
 
 DONE = Outcome(
     seed=1,
@@ -271,3 +272,14 @@ def test_a_set_of_models_has_a_seed_of_training_of_its_own(monkeypatch, tmp_path
     monkeypatch.setattr(replicas, "show", lambda *_: None)
     recipes = [replicas.replica(replicas.Recipe("soccer", (), 60, 0), k, tmp_path, 1).recipe for k in (1, 2)]
     assert len({recipe.seed for recipe in recipes}) == len({recipe.training.seed for recipe in recipes}) == 2
+
+
+def test_a_set_of_models_is_made_by_the_recipe_of_those_that_ship_unless_numbers_are_given(monkeypatch, tmp_path):
+    monkeypatch.setattr(replicas, "show", lambda *_: None)
+    shipped = read_recipe(recipe_path("agilo"))
+    own = replicas.replica(replicas.Recipe("soccer"), 1, tmp_path, 1).recipe
+    assert (own.episodes, own.random, own.rounds) == (shipped.episodes, shipped.random, shipped.rounds)
+    assert own.seed != shipped.seed
+    other = replicas.replica(replicas.Recipe("soccer", ("waypoints",), 60, 5), 1, tmp_path, 1).recipe
+    assert (other.episodes, other.random) == (60, ())
+    assert [(each.scenarios, each.episodes) for each in other.rounds] == [(("waypoints",), 5)]
