@@ -1,5 +1,6 @@
 """Making models from recipes: from seeds, resumable, and the same bits again."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -227,9 +228,12 @@ def test_recipes_that_ship_pass_all_checks(tmp_path: Path) -> None:
         check(Making(robot, read_recipe(recipe_path(robot)), tmp_path, 1, "make"))
 
 
-def test_every_robot_that_ships_has_a_recipe_of_at_most_3000_random_episodes() -> None:
-    for robot in robot_names():
-        assert read_recipe(recipe_path(robot)).episodes <= 3000
+def test_no_action_of_a_robot_that_ships_was_learned_from_over_3000_episodes() -> None:
+    """But for success beside objects, noted after runs that had none: an episode for every object."""
+    cards = [card for robot in robot_names() for card in recipe_path(robot).parent.glob("*/*.card.json")]
+    counts = {(card.parent.name, card.name): json.loads(card.read_text())["episodes"]["count"] for card in cards}
+    assert len(counts) > len(robot_names())
+    assert {name: count for name, count in counts.items() if count > 3000 and name[1] != "clearance.card.json"} == {}
 
 
 @pytest.mark.slow
