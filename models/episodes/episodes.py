@@ -167,7 +167,8 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     """
     first, *others = sets
     for one, other in itertools.combinations(sets, 2):
-        if one.sha256 == other.sha256 or _draw(one.manifest) == _draw(other.manifest) is not None:
+        same_bytes = bool(one.episodes) and one.sha256 == other.sha256  # without an episode all have the same
+        if same_bytes or _draw(one.manifest) == _draw(other.manifest) is not None:
             action, seed = one.manifest["action"], one.manifest.get("seed")
             raise UsageError(f"two data sets hold the same episodes of {action} (seed {seed}), expected each once")
     for other in others:

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from tailor.models.episodes.episodes import Episode, merge, read_data_set, write_part
+from tailor.models.episodes.episodes import DataSet, Episode, merge, read_data_set, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import UsageError
 from tests.support import standin
@@ -177,3 +177,15 @@ def test_two_data_sets_of_one_seed_hold_the_same_episodes(folder: Path, tmp_path
     for twice in ([same, same], [same, other, longer]):
         with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 1\)"):
             merge(twice)
+
+
+def test_rounds_in_which_an_action_never_ran_are_no_copies_of_one_another(folder: Path, tmp_path: Path) -> None:
+    def without_episodes(seed: int) -> DataSet:
+        made = make(tmp_path / str(seed), seed=seed)
+        (made / PART).unlink()
+        return read_data_set(made)
+
+    merged = merge([read_data_set(folder), without_episodes(2), without_episodes(3)])
+    assert (len(merged.episodes), len(merged.manifest["sources"])) == (6, 3)
+    with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 2\)"):
+        merge([read_data_set(folder), *[read_data_set(tmp_path / "2")] * 2])
