@@ -9,10 +9,13 @@ from __future__ import annotations
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from contextvars import ContextVar
 from operator import itemgetter
 from typing import Any, Protocol
+
+from tailor.schemas.errors import UsageError
 
 Part = Callable[..., Any]  # can be pickled
 Numbered = tuple[int, Any]  # index of a call, and its result
@@ -28,6 +31,9 @@ class Pool(Protocol):
           part: Function of a module.
           calls: Arguments of each call.
           jobs: Number of processes, -1 for one per core; a pool with a size of its own ignores it.
+
+        Raises:
+          UsageError: The pool has lost processes.
         """
         ...
 
@@ -48,7 +54,20 @@ class Processes:
         parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
         with _holding_interrupts():
             running: Iterator[Numbered] = parallel(delayed(_numbered)(k, part, call) for k, call in enumerate(calls))
-        return running
+        return _unless_killed(running)
+
+
+def _unless_killed(results: Iterator[Numbered]) -> Iterator[Numbered]:
+    """The results.
+
+    Raises:
+      UsageError: A process that computes them was killed, as by Linux for lack of memory.
+    """
+    try:
+        yield from results
+    except BrokenProcessPool:
+        what = "a process of this command was killed, perhaps for lack of memory"
+        raise UsageError(f"{what}: fewer --jobs need less; finished parts are kept") from None
 
 
 @contextmanager
