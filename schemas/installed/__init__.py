@@ -77,7 +77,7 @@ def part(spec: DomainSpec, field: str) -> Any:
     try:
         loaded = import_module(module)
         return getattr(loaded, attribute) if attribute else loaded
-    except (ImportError, AttributeError) as error:
+    except (ImportError, AttributeError, SyntaxError) as error:
         raise UsageError(f"domain {spec.name}: {field} = '{written}': {error}") from error
 
 

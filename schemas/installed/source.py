@@ -14,6 +14,7 @@ from tailor.schemas.installed.source_text import content_sha256, content_text
 from tailor.schemas.packages.spec import DomainSpec
 
 ROOT = Path(__file__).resolve().parents[2]
+OURS = "tailor"  # whose scenarios do not count: seeds of all evaluations are derived from these hashes
 DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, scenes
 CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_*.py")
 REASONING = tuple(f"executive/{room}/**/*" for room in ("core", "deliberation", "interfaces", "planning", "refinement"))
@@ -68,16 +69,25 @@ def _sha256(ours: Iterable[str], spec: DomainSpec) -> str:
 
 
 def _of_package(spec: DomainSpec) -> Iterator[Path]:
-    """The driver, and the files in the folders of domain, body and sampler."""
+    """The driver, and the files in the folders of domain, body and sampler; of packages of others all files.
+
+    Scenarios lie in a folder of their own, below that of the domain: a run of before they were changed is another one.
+    """
     yield Path(str(file(spec, "driver"))).resolve()
-    for written in filter(None, (spec.domain, spec.body, spec.sampler)):
-        found = find_spec(written.partition(":")[0])
+    objects = (spec.domain, spec.body, spec.sampler)
+    for module in (written.partition(":")[0] for written in objects if written):
+        found = find_spec(module)
         if found is not None and found.origin:
             yield from filter(_counts, Path(found.origin).resolve().parent.glob("*"))
+    modules = (written.partition(":")[0] for written in (*objects, spec.draw, spec.generator, spec.package))
+    for package in {module.partition(".")[0] for module in modules} - {"", OURS}:
+        found = find_spec(package)
+        for place in (found and found.submodule_search_locations) or ():
+            yield from filter(_counts, Path(place).resolve().rglob("*"))
 
 
 def _counts(path: Path) -> bool:
-    return path.suffix in (".py", *DATA)
+    return path.suffix in (".py", *DATA) and path.is_file()
 
 
 def _name(path: Path) -> str:

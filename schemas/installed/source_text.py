@@ -16,9 +16,19 @@ def content_sha256(path: Path) -> str:
 
 
 def content_text(path: Path) -> str:
-    """Meaning of a file of Python, TOML or XML; other files as they are."""
-    text = path.read_text(encoding="utf-8")
-    match path.suffix:
+    """Meaning of a file of Python, TOML or XML; other files, and those with faults, as they are.
+
+    Whoever needs a file with faults names them; a hash is no reason to end.
+    """
+    text = path.read_text(encoding="utf-8", errors="backslashreplace")
+    try:
+        return _meaning(path.suffix, text)
+    except (SyntaxError, ValueError):  # of Python, XML (a SyntaxError, too) and TOML
+        return text
+
+
+def _meaning(suffix: str, text: str) -> str:
+    match suffix:
         case ".py":
             return code_text(text)
         case ".toml":

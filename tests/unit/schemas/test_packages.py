@@ -14,6 +14,7 @@ GOOD = DomainSpec("courier", "pedelec", "courier_robot.domain:make", draw="couri
 MODULE = """
 from tailor.schemas.packages.spec import DomainSpec
 GOOD = DomainSpec("courier", "pedelec", "courier_robot.domain:make", draw="courier_robot.domain:draw")
+TYPO = DomainSpec("courier", "pedelec", "courier_robot.typo:make", draw="courier_robot.domain:draw")
 RIVAL = DomainSpec("rival", "pedelec", "courier_robot.domain:make", draw="courier_robot.domain:draw")
 BAD = DomainSpec("Bad", "", "no module", generator="a:b", draw="a:b")
 NO_SPEC = 7
@@ -27,6 +28,7 @@ def courier(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "__init__.py").write_text(MODULE)
     (folder / "broken.py").write_text("1 / 0\n")
+    (folder / "typo.py").write_text("def make(:\n")
     (folder / "domain.py").write_text("def make():\n    return 'made'\n")
     (folder / "driver.toml").write_text("robot = 'pedelec'\n")
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -78,6 +80,12 @@ def test_a_part_is_imported_only_when_it_is_needed(installs):
         installed.part(spec, "body")
     with pytest.raises(UsageError, match=r"draw = 'courier_robot\.domain:draw': .*no attribute 'draw'"):
         installed.part(spec, "draw")
+
+
+def test_a_part_that_is_no_python_is_refused_with_its_file_and_line(installs):
+    installs(courier=":TYPO")
+    with pytest.raises(UsageError, match=r"domain = 'courier_robot\.typo:make': invalid syntax \(typo\.py, line 1\)"):
+        installed.part(installed.spec_of("courier"), "domain")
 
 
 def test_all_faults_of_a_spec_stand_in_one_line_with_file_and_field(installs):

@@ -1,12 +1,14 @@
 """Hashes of source: they change with behaviour, not with words, and only with the robot's own parts."""
 
+import sys
 from functools import lru_cache
 
 import pytest
 
 from tailor.schemas.installed import source
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
-from tailor.schemas.installed.source_text import code_text
+from tailor.schemas.installed.source_text import code_text, content_sha256
+from tailor.schemas.packages.spec import DomainSpec
 
 CODE = "def f(x):\n    return x + 1\n"
 
@@ -61,3 +63,36 @@ def altered(monkeypatch):
 )
 def test_only_what_determines_the_behaviour_counts(altered, path, hashed, domain, counts):
     assert altered(path, hashed, domain) is counts
+
+
+@pytest.mark.parametrize(
+    "file", ["domain.py", "driver.toml", "control/pid.py", "scenarios/tour.toml", "scenarios/tour.pddl"]
+)
+def test_every_file_of_a_package_of_others_counts_whatever_its_folder(tmp_path, monkeypatch, file):
+    """`tailor evaluate` keeps finished runs by this hash: those of a changed scenario passed for those of today's."""
+    package = tmp_path / "ferry_robot"
+    for name in ("__init__.py", "domain.py", "driver.toml", "control/pid.py", "scenarios/tour.toml"):
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text("leg = 1.0\n")
+    (package / "scenarios" / "tour.pddl").write_text("(define (problem tour))")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for name in [name for name in sys.modules if name.startswith("ferry_robot")]:  # of the test before
+        monkeypatch.delitem(sys.modules, name)
+    spec = DomainSpec(
+        "ferry", "ferry", "ferry_robot.domain:make", draw="ferry_robot.domain:draw", package="ferry_robot"
+    )
+    monkeypatch.setattr(source, "spec_of", lambda _: spec)
+    before = runs_sha256.__wrapped__("ferry")
+    (package / "notes.txt").write_text("none of the source")
+    assert runs_sha256.__wrapped__("ferry") == before
+    (package / file).write_text("leg = 2.0\n")
+    assert runs_sha256.__wrapped__("ferry") != before
+
+
+@pytest.mark.parametrize("name", ["a.toml", "a.py", "a.xml"])
+def test_a_file_with_faults_counts_as_it_is(tmp_path, name):
+    """What needs it names the fault in one line; the hash ended commands with a traceback before."""
+    (tmp_path / name).write_bytes(b"= ) <a>\xff")
+    first = content_sha256(tmp_path / name)
+    (tmp_path / name).write_bytes(b"= ) <b>\xff")
+    assert content_sha256(tmp_path / name) != first
