@@ -19,6 +19,7 @@ from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.launch.driver_check import mismatches_of
+from tailor.tools.launch.scenario_check import faults_of_scenarios
 
 
 def check_package(name: str) -> Domain:
@@ -44,7 +45,7 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     yield from (f"{where}: {fault}" for fault in _faults_of_pddl(domain))
     for action_name, action in domain.actions.items():
         yield from (f"{where}: actions['{action_name}']: {fault}" for fault in _faults_of_action(domain, action))
-    yield from _faults_of_scenarios(spec)
+    yield from faults_of_scenarios(spec)
     yield from (f"{spec.driver}: {fault}" for fault in _faults_of_driver(spec, domain))
 
 
@@ -120,19 +121,6 @@ def _faults_of_context(action: Action) -> Iterator[str]:
         if not (math.isfinite(column.lower) and math.isfinite(column.upper) and column.lower < column.upper):
             yield f"context: column '{column.name}' ranges from {column.lower:g} to {column.upper:g}"
         taken.append(column.name)
-
-
-def _faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
-    try:
-        names = domains.scenarios(spec.name)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        yield f"{spec.scenarios}: not TOML: {error}"
-        return
-    except UsageError as error:
-        yield str(error)
-        return
-    if not names:
-        yield f"{spec.generator or spec.scenarios}: there is no scenario"
 
 
 def _faults_of_driver(spec: DomainSpec, domain: Domain) -> Iterator[str]:

@@ -12,6 +12,7 @@ from typing import Any
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
+from tailor.tools.launch.package_check import check_package
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 
@@ -129,6 +130,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(
             "--resume skips evaluations whose page is in the report's folder, expected --report DIR with it"
         )
+    for domain in {settings.domain for *_, settings in chosen if settings.domain}:
+        check_package(domain)  # not in the midst of it, by a traceback
     with working_on(chosen[0][2].on if chosen else None, _work_of(chosen)):
         return _run_all(chosen, RESUME in flags, everything)
 

@@ -13,6 +13,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.pages.overview import write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
+from tailor.tools.launch import package_check
 from tailor.tools.main import main
 
 CALLS: list[str] = []
@@ -70,6 +71,15 @@ def test_the_lot_goes_on_where_one_cannot_run(capsys, tmp_path):
 def test_one_that_cannot_run_alone_is_a_usage_error(capsys):
     assert main(["evaluate", "third"]) == 2
     assert capsys.readouterr().err == "tailor evaluate: no data here\n"
+
+
+def test_a_package_at_fault_is_refused_before_anything_runs(monkeypatch, capsys):
+    """A scenario file without its problem ended the evaluation in a traceback, after the runs of the others."""
+    monkeypatch.setattr(package_check, "faults_of_package", lambda *_: ["scenarios/a.toml: problem is missing"])
+    assert main(["evaluate", "first", "--domain", "soccer"]) == 2
+    assert CALLS == []
+    expected = "the package of soccer does not hold together: scenarios/a.toml: problem is missing\n"
+    assert capsys.readouterr().err == f"tailor evaluate: {expected}"
 
 
 def test_resume_leaves_out_what_has_a_page(tmp_path, capsys):

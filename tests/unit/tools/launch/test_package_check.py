@@ -7,7 +7,7 @@ import pytest
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
-from tailor.tools.launch import package_check
+from tailor.tools.launch import package_check, scenario_check
 from tailor.tools.launch.package_check import check_package, faults_of_package
 
 NAN = float("nan")
@@ -80,14 +80,43 @@ def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, f
     assert fault in found
 
 
-def test_scenarios_that_are_missing_or_no_toml_are_named(tmp_path, monkeypatch):
-    spec, soccer = spec_of("soccer"), domains.load("soccer")
-    monkeypatch.setattr(domains, "file", lambda *_: tmp_path)
-    assert list(faults_of_package(spec, soccer)) == [f"{spec.scenarios}: there is no scenario"]
-    (tmp_path / "a.toml").write_text("= 3")
-    assert "not TOML" in next(iter(faults_of_package(spec, soccer)))
-    monkeypatch.setattr(domains, "file", lambda *_: tmp_path / "none")
-    assert "no such folder" in next(iter(faults_of_package(spec, soccer)))
+@pytest.fixture
+def scenarios(tmp_path, monkeypatch):
+    """An empty folder of soccer's scenarios, and the faults found in it."""
+    folder = tmp_path / "scenarios"
+    folder.mkdir()
+    for module in (domains, scenario_check):
+        monkeypatch.setattr(module, "file", lambda *_: folder)
+    return folder, lambda: list(faults_of_package(spec_of("soccer"), domains.load("soccer")))
+
+
+def test_scenarios_that_are_missing_are_named(scenarios):
+    folder, faults = scenarios
+    assert faults() == [f"{spec_of('soccer').scenarios}: there is no scenario"]
+    folder.rmdir()
+    assert "no such folder" in faults()[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        (b"= 3", "not TOML: "),
+        (b"\xff", "not UTF-8"),
+        (b"", "problem is missing, expected the name of a PDDL file"),
+        (b"problem = 3", "problem is 3, expected the name of a PDDL file"),
+        (b"problem = 'b.pddl'", "problem is 'b.pddl', expected a file beside it"),
+        (b"problem = 'a.pddl'\norder = 'last'", "order is 'last', expected a number"),
+        (b"problem = 'a.pddl'\nsettings = 1", "settings is 1, expected a table"),
+    ],
+)
+def test_each_fault_of_a_scenario_file_is_named_with_the_file(scenarios, text, fault):
+    folder, faults = scenarios
+    (folder / "a.pddl").write_text("(define (problem a))")
+    (folder / "good.toml").write_text("problem = 'a.pddl'\norder = 2")
+    assert faults() == []
+    (folder / "bad.toml").write_bytes(text)
+    [found] = faults()
+    assert found.startswith(f"{spec_of('soccer').scenarios}/bad.toml: {fault}")
 
 
 def test_all_faults_stand_in_one_line(monkeypatch):

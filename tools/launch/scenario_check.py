@@ -1,0 +1,52 @@
+"""Checks the scenario files of a robot's package, before one of them is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.resources.abc import Traversable
+
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import file
+from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.parsed_files import shown, toml_table
+
+
+def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
+    """All faults of a package's scenarios, each with file and field."""
+    folder = None if spec.generator else file(spec, "scenarios")
+    if folder is not None and folder.is_dir():
+        names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
+        found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in _faults_of_file(folder, name)]
+        if found:
+            yield from found
+            return
+    try:
+        known = domains.scenarios(spec.name)
+    except UsageError as error:
+        yield str(error)
+        return
+    if not known:
+        yield f"{spec.generator or spec.scenarios}: there is no scenario"
+
+
+def _faults_of_file(folder: Traversable, name: str) -> Iterator[str]:
+    """Faults of a scenario file that show without drawing it; `draw` reads the other entries."""
+    try:
+        declared = toml_table(folder.joinpath(name).read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        yield "not UTF-8"
+        return
+    except ValueError as error:
+        yield str(error)
+        return
+    order, problem = declared.get("order", 0), declared.get("problem")
+    if isinstance(order, bool) or not isinstance(order, int | float):
+        yield f"order is {shown(order)}, expected a number"
+    if not isinstance(problem, str):
+        yield f"problem is {'missing' if problem is None else shown(problem)}, expected the name of a PDDL file"
+    elif not folder.joinpath(problem).is_file():
+        yield f"problem is {shown(problem)}, expected a file beside it"
+    settings = declared.get("settings", {})
+    if not isinstance(settings, dict):
+        yield f"settings is {shown(settings)}, expected a table"
