@@ -4,26 +4,38 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable
+from collections.abc import Collection
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 
 CHECKSUMS = "SHA256SUMS"
-LINE = re.compile(r"([0-9a-f]{64})  ((?:\w[\w.-]*/)*\w[\w.-]*)")  # paths stay inside of the folder
+NAME = re.compile(r"(?:\w[\w.-]*/)*\w[\w.-]*")  # such paths stay inside of the folder
+LINE = re.compile(rf"([0-9a-f]{{64}})  ({NAME.pattern})")
 
 
-def write_checksums(folder: Path, files: Iterable[Path]) -> None:
-    """List files of a folder, paths relative to it."""
+def write_checksums(folder: Path, files: Collection[Path]) -> None:
+    """List files of a folder, paths relative to it.
+
+    Raises:
+      UsageError: A name has another character than those that `checked_files` takes.
+    """
+    for file in files:
+        if not NAME.fullmatch(file.as_posix()):
+            raise UsageError(f"{file}: expected names of letters, digits, _, . and -, the first no . or -")
     rows = [f"{_sha256(folder / file)}  {file.as_posix()}\n" for file in sorted(files)]
     (folder / CHECKSUMS).write_text("".join(rows), encoding="utf-8")
 
 
-def checked_files(folder: Path) -> list[Path]:
+def checked_files(folder: Path, kind: str) -> list[Path]:
     """The listed files of a folder, paths relative to it.
 
+    Args:
+      folder: What was fetched of a place: the files of models or of data sets, and the list.
+      kind: "model" or "dataset", for errors.
+
     Raises:
-      UsageError: There is no list, a file is missing or differs, or the list is none.
+      UsageError: There is no list, a file is missing or differs, or the list is none or of the other kind.
     """
     try:
         lines = (folder / CHECKSUMS).read_text(encoding="utf-8").splitlines()
@@ -33,6 +45,8 @@ def checked_files(folder: Path) -> list[Path]:
     rows = [(match[1], Path(match[2])) for match in found if match]
     if len(rows) < len(lines) or not rows:
         raise UsageError(f"{CHECKSUMS} is no list of checksums, expected what `tailor models push` wrote")
+    if not any((folder / file).is_file() for _, file in rows):
+        raise UsageError(f"{CHECKSUMS} lists no file of a {kind}; --data stands for data sets, no --data for models")
     for sha256, file in rows:
         if not (folder / file).is_file():
             raise UsageError(f"{file} is missing, but listed in {CHECKSUMS}")

@@ -45,14 +45,12 @@ def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> No
 
 
 def write_data(data: Path, licence: str | None, folder: Path) -> None:
-    """Write the data sets in the sub-folders of a folder as a folder of the hub.
+    """Write the data sets in the sub-folders of a folder as a folder of the hub; hidden ones are left out.
 
     Raises:
-      UsageError: There are no data sets, or they are of several robots.
+      UsageError: There are no data sets, they are of several robots, or a part is damaged.
     """
-    import pyarrow.parquet as pq  # here, so that models need no pyarrow
-
-    sets = sorted(manifest.parent for manifest in data.glob(f"*/{MANIFEST}"))
+    sets = sorted(manifest.parent for manifest in data.glob(f"*/{MANIFEST}") if manifest.parent.name[0] != ".")
     manifests = {each.name: read_manifest(each) for each in sets}
     robots = sorted({manifest["robot"] for manifest in manifests.values()})
     if len(robots) != 1:
@@ -60,11 +58,22 @@ def write_data(data: Path, licence: str | None, folder: Path) -> None:
         raise UsageError(f"{data}: data sets of {found}, expected those of one robot (`tailor gather` writes them)")
     parts = [part for each in sets for part in sorted(each.glob("part-*.parquet"))]
     files = [file.relative_to(data) for file in (*parts, *(each / MANIFEST for each in sets))]
-    rows = sum(pq.read_metadata(part).num_rows for part in parts)
+    rows = sum(map(_rows, parts))
     _copy(data, files, folder)
     card = data_card(robots[0], manifests, rows, licence or licence_of(robots[0]))
     (folder / README).write_text(card, encoding="utf-8")
     write_checksums(folder, files)
+
+
+def _rows(part: Path) -> int:
+    import pyarrow as pa  # here, so that models need no pyarrow
+    import pyarrow.parquet as pq
+
+    try:
+        return int(pq.read_metadata(part).num_rows)
+    except (pa.ArrowException, OSError) as error:
+        first = str(error).partition("\n")[0]
+        raise UsageError(f"{part}: cannot be read ({first}), expected a part of a data set") from None
 
 
 def _copy(source: Path, files: list[Path], target: Path) -> None:

@@ -64,7 +64,7 @@ def _text(robot: str, cards: Sequence[Card]) -> Iterator[str]:
     yield "```"
     yield ""
     yield "Each `ACTION/KIND.onnx` takes `arguments`, float64 (n, k); its card, `KIND.card.json`, states ranges, golden"
-    yield "examples and the hash of the file. `SHA256SUMS` lists all files."
+    yield "examples and the hash of the file. `SHA256SUMS` lists them all."
     yield ""
     yield "## Models"
     yield ""

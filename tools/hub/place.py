@@ -27,10 +27,13 @@ def place_of(written: str) -> Place:
     """The place that a user wrote. What may be either is refused: a folder's name must publish nothing.
 
     Raises:
-      UsageError: It is neither, or may be both.
+      UsageError: It is neither, or may be both; or it begins with ~ and the name of nobody here.
     """
     if written.startswith(("./", "../", "/", "~")):
-        return Place(folder=Path(written).expanduser())
+        try:
+            return Place(folder=Path(written).expanduser())
+        except RuntimeError as error:
+            raise UsageError(f"'{written}': {error}, {EXPECTED}") from None
     if not REPOSITORY.fullmatch(written):
         raise UsageError(f"'{written}': {EXPECTED}")
     if Path(written.partition("/")[0]).exists():

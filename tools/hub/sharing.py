@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
-from tailor.tools.hub.place import place_of
+from tailor.tools.hub.place import Place, place_of
 
 VERBS = ("push", "pull")
 
@@ -60,6 +60,8 @@ def check_flags(arguments: argparse.Namespace) -> None:
 def _check_models(arguments: argparse.Namespace) -> None:
     pushing = arguments.verb == "push"
     own, place = ("--to", arguments.to) if pushing else ("--from", arguments.source)
+    if arguments.data is not None and arguments.zoo is not None:
+        raise UsageError(f"{arguments.verb} --data takes no --zoo: data sets are no models")
     if place is None:
         raise UsageError(f"{arguments.verb} needs {own} USER/NAME, a repository of the hub, or {own} ./FOLDER")
     wanted = 1 if pushing and arguments.data is None else 0
@@ -78,15 +80,25 @@ def _push(arguments: argparse.Namespace) -> dict[str, str]:
         (robot,) = arguments.models
         zoo = arguments.zoo or models_folder(robot)
         write, kind = partial(write_models, zoo, robot, arguments.license), "model"
-    return {"pushed": push(write, place_of(arguments.to), kind, arguments.public)}
+    place = _place(arguments.to, {"--public": arguments.public})
+    return {"pushed": push(write, place, kind, arguments.public)}
 
 
 def _pull(arguments: argparse.Namespace) -> dict[str, list[str]]:
     from tailor.tools.hub.transfer import pull_data, pull_models
 
-    place = place_of(arguments.source)
+    place = _place(arguments.source, {"--revision": arguments.revision})
     if arguments.data is not None:
         paths: list[Path] = pull_data(place, arguments.revision, arguments.data, arguments.replace)
     else:
         paths = pull_models(place, arguments.revision, arguments.zoo, arguments.replace)
     return {"pulled": [str(path) for path in paths]}
+
+
+def _place(written: str, for_hub: dict[str, object]) -> Place:
+    """The place that a user wrote; raises UsageError if it is a folder and a flag is for repositories only."""
+    place = place_of(written)
+    for flag, value in for_hub.items():
+        if value and place.folder is not None:
+            raise UsageError(f"{flag} is for a repository of the hub, found the folder {written}")
+    return place

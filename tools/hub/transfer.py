@@ -121,7 +121,7 @@ def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[s
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, target)
     try:
-        files = checked_files(into)
+        files = checked_files(into, kind)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
     listed = {into / file for file in files}

@@ -205,6 +205,10 @@ def test_a_swap_that_was_killed_is_completed_by_the_next_one(tmp_path):
         (("pull", "--from", "./nothing"), "nothing: no such folder"),
         (("pull", "--from", "./tests"), "there is no SHA256SUMS"),
         (("push", "--data", "nowhere", "--to", "./a"), "nowhere: data sets of none"),
+        (("push", ROBOT, "--to", "~nobody-of-this-name/a"), "'~nobody-of-this-name/a': Could not determine home"),
+        (("push", ROBOT, "--to", "./a", "--public"), "--public is for a repository of the hub, found the folder ./a"),
+        (("pull", "--from", "./tests", "--revision", "v1"), "--revision is for a repository of the hub"),
+        (("pull", "--data", "a", "--zoo", "b", "--from", "./tests"), "pull --data takes no --zoo"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(arguments, expected, tmp_path, monkeypatch, capsys):
@@ -218,6 +222,35 @@ def test_a_list_of_checksums_names_no_file_outside_of_its_folder(folder, capsys)
     with (folder / "SHA256SUMS").open("a") as file:
         file.write(f"{'0' * 64}  ../../secret\n")
     assert "no list of checksums" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
+
+
+def test_models_are_no_data_sets(folder, tmp_path, capsys):
+    """They were said to be missing, though they were there."""
+    line = refused(capsys, "pull", "--data", "theirs", "--from", "./pushed")
+    assert "pushed: SHA256SUMS lists no file of a dataset" in line
+
+
+def test_a_damaged_part_is_named_before_anything_is_pushed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    part = data_sets(tmp_path / "data") / "go" / "part-00000.parquet"
+    part.write_bytes(part.read_bytes()[:100])
+    assert "data/go/part-00000.parquet: cannot be read (" in refused(capsys, "push", "--data", "data", "--to", "./a")
+    assert not (tmp_path / "a").exists()
+
+
+def test_nothing_is_pushed_that_no_pull_would_take(tmp_path, monkeypatch, capsys):
+    """The list of checksums takes no other names: such a folder was pushed, and every pull of it failed."""
+    monkeypatch.chdir(tmp_path)
+    data = data_sets(tmp_path / "data")
+    shutil.copytree(data / "go", data / ".go.replaced")  # of a pull that was killed
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+    assert main(["models", "pull", "--data", "theirs", "--from", "./pushed"]) == 0
+    assert sorted(path.name for path in (tmp_path / "theirs").iterdir()) == ["go", "turn"]
+    (data / "go").rename(data / "go there")
+    line = refused(capsys, "push", "--data", "data", "--to", "./other")
+    assert "tailor models: go there/" in line
+    assert ": expected names of letters, digits, _, . and -, the first no . or -" in line
+    assert not (tmp_path / "other").exists()
 
 
 def test_what_the_hub_refuses_is_reported_in_one_line(hub, capsys, monkeypatch):
