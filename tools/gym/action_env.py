@@ -18,7 +18,16 @@ from tailor.executive.interfaces.outlet import at_rest, completed
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
-from tailor.tools.gym.spaces import Command, believed, clipped, command_space, numbers, width
+from tailor.tools.gym.spaces import (
+    Command,
+    believed,
+    checked_arguments,
+    checked_limit,
+    clipped,
+    command_space,
+    numbers,
+    width,
+)
 from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S, new_body
 from tailor.tools.lockstep.readings import judged, newest
 from tailor.tools.lockstep.task_sampler import sampler_of
@@ -47,17 +56,18 @@ class ActionEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
         Args:
           domain: Name of an installed domain.
           action: One of its executable actions; empty: the first.
-          limit_s: Time limit of an episode, simulated seconds.
+          limit_s: Time limit of an episode, simulated seconds, above 0.
 
         Raises:
-          UsageError: Unknown domain or action, or the package has no body or no sampler.
+          UsageError: Unknown domain or action, the package has no body or no sampler, or no such time limit.
         """
+        self._limit_s = checked_limit(limit_s)
         self._domain = domains.load(domain)
         name = action or next(iter(self._domain.actions))
         if name not in self._domain.actions:
             raise UsageError(f"no action {name!r} in {domain}, expected one of: {', '.join(self._domain.actions)}")
         self._action, self._sampler = self._domain.actions[name], sampler_of(self._domain)
-        self._body, self._limit_s = new_body(self._domain), limit_s
+        self._body = new_body(self._domain)
         self.action_space = command_space(self._domain, shipped_driver_spec(self._domain.robot))
         self.observation_space = Dict(
             belief=numbers(len(self._domain.belief_names)), arguments=numbers(width(self._action))
@@ -81,13 +91,15 @@ class ActionEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           options: `arguments` of the controller, shape (k,), instead of those that are drawn.
 
         Raises:
-          UsageError: The action ends at once, in each of MAX_DRAWS draws.
+          UsageError: The given arguments are not finite numbers of that shape, or the action ends at once, in each of
+            MAX_DRAWS draws.
         """
         super().reset(seed=seed)
+        given = (options or {}).get("arguments")
+        arguments = None if given is None else checked_arguments(self._action, given)
         for _ in range(MAX_DRAWS):
             rng = np.random.default_rng(self.np_random.integers(2**63, size=2))
-            given = (options or {}).get("arguments")
-            self._begin(self._sampler.sample(self._action, rng) if given is None else np.array(given, float), rng)
+            self._begin(self._sampler.sample(self._action, rng) if arguments is None else arguments.copy(), rng)
             if not self._over():
                 return self._observation(), self._info()
         raise UsageError(f"{self._action.name}: ends at once, in {MAX_DRAWS} draws of its arguments")

@@ -11,6 +11,7 @@ from gymnasium.spaces import Box
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array, Belief
+from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import DriverSpec
 
 Command = tuple[float, ...]
@@ -54,6 +55,33 @@ def width(action: Action) -> int:
     """Number of the arguments of an action's controller and models."""
     lower = np.array([[parameter.lower for parameter in action.parameters]])
     return int(action.arguments(lower).shape[1])
+
+
+def checked_limit(limit_s: float) -> float:
+    """A time limit of an episode, s.
+
+    Raises:
+      UsageError: It is no number above 0; infinity is one, and truncates nothing.
+    """
+    if not limit_s > 0:
+        raise UsageError(f"limit_s is {limit_s!r}, expected seconds above 0")
+    return limit_s
+
+
+def checked_arguments(action: Action, given: Any) -> Array:
+    """Arguments that a caller gives an action's controller, shape (k,).
+
+    Raises:
+      UsageError: They are not so many finite numbers.
+    """
+    count = width(action)
+    try:
+        row = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        row = np.empty(0)
+    if row.shape != (count,) or not np.isfinite(row).all():
+        raise UsageError(f"arguments of {action.name} are {given!r}, expected {count} finite numbers")
+    return row
 
 
 def padded(values: Any, length: int) -> Array:

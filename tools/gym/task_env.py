@@ -27,7 +27,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.world import World
-from tailor.tools.gym.spaces import Command, believed, clipped, command_space, numbers, padded, width
+from tailor.tools.gym.spaces import Command, believed, checked_limit, clipped, command_space, numbers, padded, width
 from tailor.tools.lockstep.driver_link import DriverLink
 from tailor.tools.lockstep.run import CHECKS_PER_TICK, SENDER
 from tailor.tools.lockstep.worlds import events_of, make_world
@@ -60,17 +60,19 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           domain: Name of an installed domain.
           scenario: One of its scenarios; empty: the first.
           zoo: Folder of action models; empty: those of the robot's package.
-          limit_s: Time limit of an episode, simulated seconds.
-          checks: Budget of the deliberation in each step; fewer are faster to simulate, more refine better.
+          limit_s: Time limit of an episode, simulated seconds, above 0.
+          checks: Budget of the deliberation in each step, at least 1; fewer are faster to simulate, more refine better.
 
         Raises:
-          UsageError: Unknown domain or scenario, no body, or no action models.
+          UsageError: Unknown domain or scenario, no body, no action models, or no such limit or number of checks.
         """
+        if not isinstance(checks, int | np.integer) or checks < 1:
+            raise UsageError(f"checks is {checks!r}, expected a whole number, at least 1")
+        self._limit_s, self._checks = checked_limit(limit_s), int(checks)
         self._domain = domains.load(domain)
         self._scenario = scenario or domains.scenarios(domain)[0]
         self._models = load_models(self._domain.robot, zoo)
         self._body = make_world(self._domain.robot, self._scenario, 0).body  # refuses an unknown scenario
-        self._limit_s, self._checks = limit_s, checks
         self._names = tuple(self._domain.actions)
         self._width = max(width(action) for action in self._domain.actions.values())
         self.action_space = command_space(self._domain, shipped_driver_spec(self._domain.robot))
@@ -95,12 +97,15 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           options: `seed` of the scenario, instead of one that is drawn.
 
         Raises:
-          UsageError: No action starts, in none of MAX_DRAWS draws.
+          UsageError: The given seed is no whole number from 0 up; or no action starts, in none of MAX_DRAWS draws.
         """
         super().reset(seed=seed)
+        given = (options or {}).get("seed")
+        if given is not None and (not isinstance(given, int | np.integer) or given < 0):
+            raise UsageError(f"seed of the scenario is {given!r}, expected a whole number, at least 0")
         for _ in range(MAX_DRAWS):
             drawn = int(self.np_random.integers(2**31))
-            drawn = int((options or {}).get("seed", drawn))
+            drawn = drawn if given is None else int(given)
             self._begin(drawn)
             while not self._over() and self._state.task.running is None and self._tick * PERIOD_S < self._limit_s:
                 self._next_tick(self._state.command)

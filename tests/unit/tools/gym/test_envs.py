@@ -166,8 +166,30 @@ def test_a_scenario_s_seed_can_be_chosen():
         ("tailor/arm-v0", {"scenario": "letter-ß"}, "no scenario"),
         ("tailor/arm-v0", {"zoo": "/nowhere"}, "no action models"),
         ("tailor-action/arm-v0", {"action": "fly"}, "no action 'fly'"),
+        ("tailor-action/arm-v0", {"limit_s": float("nan")}, "limit_s is nan, expected seconds above 0"),
+        ("tailor/arm-v0", {"limit_s": 0}, "limit_s is 0, expected seconds above 0"),
     ],
 )
 def test_what_a_robot_does_not_have_is_refused_in_one_line(env_id, options, fault):
     with pytest.raises(UsageError, match=fault):
         make(env_id, **options)
+
+
+@pytest.mark.parametrize("checks", [0, -5, 1.5, float("nan")])
+def test_a_budget_with_which_no_action_starts_is_refused(checks):
+    with pytest.raises(UsageError, match=r"checks is .*, expected a whole number, at least 1"):
+        gymnasium.make("tailor/arm-v0", checks=checks)
+
+
+@pytest.mark.parametrize("arguments", [[1.0, 2.0], [float("nan")] * 10, "x", [[0.0] * 10]])
+def test_arguments_that_are_none_of_the_action_are_refused(arguments):
+    """A body with positions that are not finite ran on, and returned rewards."""
+    env = make("tailor-action/arm-v0")
+    with pytest.raises(UsageError, match=r"arguments of reach are .*, expected 10 finite numbers"):
+        env.reset(seed=1, options={"arguments": arguments})
+
+
+@pytest.mark.parametrize("seed", [-1, 1.7, "x"])
+def test_a_scenario_s_seed_that_is_none_is_refused(seed):
+    with pytest.raises(UsageError, match=r"seed of the scenario is .*, expected a whole number, at least 0"):
+        make("tailor/arm-v0").reset(options={"seed": seed})
