@@ -16,6 +16,7 @@ from tailor.tools.recordings.damage_notice import notice
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 EXECUTIVE = "exec/"
+SHOWN_DIGITS = 8  # of a sender, as `tailor info` shows them
 DAMAGE = "damage"  # kind of the event that states the damage of a recording
 BETTER = ("truth", "believed")  # sources of the robot's pose; with one of them the page draws no other
 SENSED = (Odometry, PoseEstimate)  # the others: most of a recording's messages, and the slowest to decode
@@ -42,15 +43,20 @@ def timed(
       read: Called with the damage of the file, when all of it has been read.
 
     Raises:
-      UsageError: The file is no recording, or has no readable message.
+      UsageError: The file is no recording, or has no readable message, or none of such an executive.
     """
     began_ns: int | None = None
+    executives: set[str] = set()
     skipped = {ros_type(kind) for kind in without}
     recording = open_recording(path)
     for recorded in recording.messages():
         kind = type_of(recorded.ros_type)
-        if kind is None or (recorded.key.startswith(EXECUTIVE) and not recorded.sender.startswith(sender)):
+        if kind is None:
             continue
+        if recorded.key.startswith(EXECUTIVE):
+            executives.add(recorded.sender)
+            if not recorded.sender.startswith(sender):
+                continue
         message = None if recorded.ros_type in skipped else decode(kind, recorded.data)
         if isinstance(message, Rejected):
             continue
@@ -59,7 +65,15 @@ def timed(
             yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
     if began_ns is None:
         raise UsageError(f"{path}: no readable message, expected a recording of a run")
+    _check_sender(path, sender, executives)
     read(recording.damage)
+
+
+def _check_sender(path: Path, sender: str, executives: Collection[str]) -> None:
+    """Raise UsageError if none of the executives in a recording has such an id."""
+    if sender and not any(each.startswith(sender) for each in executives):
+        known = ", ".join(sorted(each[:SHOWN_DIGITS] for each in executives)) or "none"
+        raise UsageError(f"{path}: no executive whose id begins with '{sender}', expected one of: {known}")
 
 
 def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:

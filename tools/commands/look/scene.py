@@ -56,7 +56,11 @@ def run(arguments: argparse.Namespace) -> int:
     """0; for a recording 1 if it has no run whose robot is known."""
     if sum((arguments.live, arguments.recording is not None, arguments.layout is not None)) != 1:
         raise UsageError("expected a recording, --live or --layout DOMAIN")
-    if arguments.layout:
+    if arguments.sender and not arguments.live:
+        raise UsageError("--sender is the id under which --live publishes, expected it with --live")
+    if arguments.output is not None and arguments.live:
+        raise UsageError("--live takes no --output: it publishes on the bus, where `tailor record` records it")
+    if arguments.layout is not None:
         return _layout(arguments)
     return _live(arguments) if arguments.live else _write(arguments)
 

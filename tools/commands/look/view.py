@@ -57,6 +57,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--port is {arguments.port}, expected 0 to 65535")
     if not arguments.live:
         return _write(arguments)
+    if arguments.output is not None:
+        raise UsageError("--live takes no --output: it serves the page; record the run, and view the recording")
     LiveRun(arguments, stop_on_signals()).serve()
     return 0
 

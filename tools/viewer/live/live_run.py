@@ -43,7 +43,7 @@ class LiveRun:
         """
         with ExitStack() as stack:
             sessions = stack.enter_context(ExitStack())
-            endpoint = self._stop_endpoint(sessions)
+            endpoint, why_none = self._stop_endpoint(sessions)
             document = page("live", (), live=True, stop_token=endpoint.token if endpoint else "")
             port = stack.enter_context(serving(document, self._broadcast, self._arguments.port, endpoint))
             if sys.platform == "linux":  # of this thread and those that it starts, so not of the stop button's
@@ -51,20 +51,21 @@ class LiveRun:
             codec.prime()
             run: BusRun | None = sessions.enter_context(open_run(self._arguments, "observer"))
             shown = bus_settings(self._arguments).endpoint
+            if why_none:  # not earlier: a bus that nobody can open has one error
+                print(f"the page has no stop button: {plain(why_none)}", flush=True)
             print(f"http://127.0.0.1:{port}/ shows {shown}; Ctrl-C stops it", flush=True)
             open_again = partial(self._open_again, button=endpoint is not None)
             while run is not None:
                 self._listen(sessions, run)
                 run = opened_anew(sessions, open_again, lambda: self._stop.requested)
 
-    def _stop_endpoint(self, sessions: ExitStack) -> StopEndpoint | None:
-        """The page's stop button, with a session of its own; None where this user may not stop drivers."""
+    def _stop_endpoint(self, sessions: ExitStack) -> tuple[StopEndpoint | None, str]:
+        """The page's stop button, with a session of its own; None and why where this user may not stop drivers."""
         try:
             self._take_button(sessions)
         except UsageError as error:
-            print(f"the page has no stop button: {plain(str(error))}", flush=True)
-            return None
-        return StopEndpoint(self._button.press, lambda: self._button.connected)
+            return None, str(error)
+        return StopEndpoint(self._button.press, lambda: self._button.connected), ""
 
     def _take_button(self, sessions: ExitStack) -> None:
         session = sessions.enter_context(open_bus(self._arguments, "people"))

@@ -44,3 +44,17 @@ def test_pages_begin_anew_only_once_the_next_run_is_listened_to(monkeypatch, ref
         assert json.loads(page.next(0)) == [Event(0.0, "now", {"bus": False}).json_value()]
     with run._broadcast.subscribe() as page:
         assert json.loads(page.next(0)) == (PAST if refused else BEGINS)
+
+
+def test_a_bus_that_nobody_can_open_is_one_error(monkeypatch, capsys):
+    """A remark on the stop button came before it, on standard output."""
+
+    def open_bus(arguments, role, sender=""):
+        raise UsageError("no router responds")
+
+    for module in (live_run, bus_renewal):
+        monkeypatch.setattr(module, "open_bus", open_bus)
+    monkeypatch.setattr(live_run.os, "nice", lambda _: 0)
+    with pytest.raises(UsageError, match="no router responds"):
+        LiveRun(argparse.Namespace(**vars(FLAGS), port=0), Stop()).serve()
+    assert capsys.readouterr().out == ""

@@ -20,18 +20,24 @@ from tailor.tools.commands.look import picture, scene, view, why
 from tests.support import synthetic_run
 
 SENDERS = {"exec/": "ab" * 16}
+OTHER = "cd" * 16  # another executive
 BEGIN_NS = 1_700_000_000_000_000_000
 
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory) -> Path:
     """A recording of the soccer run; its provenance names models that do not exist."""
-    path = tmp_path_factory.mktemp("recordings") / "run.mcap"
+    return written(tmp_path_factory.mktemp("recordings") / "run.mcap", synthetic_run.soccer_run())
+
+
+def written(path, run, others=()) -> Path:
+    """A recording of messages, and of those of another executive."""
     writer = McapWriter(path, {})
-    for number, t in enumerate(synthetic_run.soccer_run()):
-        kind = encoding_of(type(t.message))
-        origin = pack(Origin(number, BEGIN_NS, synthetic_run.SENDER))
-        writer.write(Raw(t.key, encode(t.message), origin, kind, True, None), BEGIN_NS + t.time_ns)
+    every = [(t, synthetic_run.SENDER) for t in run] + [(t, OTHER) for t in others]
+    for number, (t, sender) in enumerate(every):
+        origin = pack(Origin(number, BEGIN_NS, sender))
+        raw = Raw(t.key, encode(t.message), origin, encoding_of(type(t.message)), True, None)
+        writer.write(raw, BEGIN_NS + t.time_ns)
     writer.close()
     return path
 
@@ -106,13 +112,23 @@ def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -
     capsys.readouterr()
 
 
-def test_view_shows_only_the_requested_executive(recording, tmp_path, capsys) -> None:
-    output = tmp_path / "page.html"
+def test_view_shows_only_the_requested_executive(tmp_path, capsys) -> None:
+    messages = list(synthetic_run.soccer_run())
+    [first, *_] = [t for t in messages if t.key == "exec/status"]
+    recording, output = written(tmp_path / "two.mcap", messages, [first]), tmp_path / "page.html"
     run(view, recording, "-o", output, "--no-models", "--sender", "cd")
     kinds = {block["kind"] for block in data_in(output)["samples"]}
     assert "tick" not in kinds
     assert "truth" in kinds
     capsys.readouterr()
+
+
+@pytest.mark.parametrize("command", [view, why])
+def test_an_executive_that_is_not_in_the_recording_is_refused(command, recording) -> None:
+    """The page of nobody was written over that of the run."""
+    known = synthetic_run.SENDER[:8]
+    with pytest.raises(UsageError, match=f"no executive whose id begins with 'ef', expected one of: {known}"):
+        run(command, recording, "--sender", "ef")
 
 
 def test_view_is_the_same_page_every_time(recording, tmp_path, capsys) -> None:
@@ -127,6 +143,19 @@ def test_view_is_the_same_page_every_time(recording, tmp_path, capsys) -> None:
 def test_view_refuses_contradictory_arguments(words) -> None:
     with pytest.raises(UsageError, match="expected"):
         run(view, *words)
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "fault"),
+    [
+        (view, ["--live", "-o", "a.html"], "--live takes no --output"),
+        (scene, ["--live", "-o", "a.mcap"], "--live takes no --output"),
+        (scene, ["a.mcap", "--sender", "ab" * 16], "expected it with --live"),
+    ],
+)
+def test_what_a_live_page_or_scene_would_ignore_is_refused(command, words, fault) -> None:
+    with pytest.raises(UsageError, match=fault):
+        run(command, *words)
 
 
 @pytest.mark.parametrize("command", [view, why])
