@@ -74,6 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Record until stopped; 0, or 1 if something was lost."""
     for name in ("max_size", "max_duration", "snapshot"):
         check_within(getattr(arguments, name), MAX_LIMIT, f"--{name.replace('_', '-')}")
+    _check_flags(arguments)
     wanted = selection(arguments.topics, arguments.exclude)
     stop, notifier = stop_on_signals(), Notifier.from_environment()
     if arguments.write:
@@ -94,6 +95,16 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if health.drops or health.unwritten or health.disk_error else 0
 
 
+def _check_flags(arguments: argparse.Namespace) -> None:
+    """Raise UsageError if a flag is given that the others leave no use for."""
+    split = ("max_size", "max_duration")
+    of_files = ("output", "topics", "exclude", "snapshot", *split)
+    for given, others in (("write", of_files), ("snapshot", split)):
+        ignored = [f"--{name.replace('_', '-')}" for name in others if getattr(arguments, name)]
+        if getattr(arguments, given) and ignored:
+            raise UsageError(f"--{given} takes no {', '.join(ignored)} (see tailor record --help)")
+
+
 def _write(arguments: argparse.Namespace) -> int:
     """Request a snapshot; 0 if it is accepted."""
     with open_bus(arguments, "people", sender=sender_of(arguments)) as session:
@@ -107,7 +118,10 @@ def _write(arguments: argparse.Namespace) -> int:
 
 def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection) -> Recorder | SnapshotRecorder:
     limits = Limits(round(arguments.max_size * 1e6), round(arguments.max_duration * 1e9))
-    path = Path(arguments.output or datetime.now().strftime("tailor-%Y%m%d-%H%M%S.mcap"))
+    named: str | None = arguments.output
+    path = Path(datetime.now().strftime("tailor-%Y%m%d-%H%M%S.mcap") if named is None else named)
+    if not path.name:
+        raise UsageError(f"--output {path}: is a folder, expected the name of a new file")
     metadata = RecordingMetadata(version("tailor"), wall_ns())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

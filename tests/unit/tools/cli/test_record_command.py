@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 from contextlib import contextmanager
 
+import pytest
+
 from tailor.runtime.recordings.recorder import Health
+from tailor.schemas.errors import UsageError
 from tailor.tools.commands.run import record
 
 
@@ -35,3 +38,28 @@ def test_the_file_is_whole_before_the_session_is_closed(monkeypatch):
     record.configure(parser)
     assert record.run(parser.parse_args(["--quiet"])) == 0
     assert closed == ["file", "session"]
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        (["--snapshot", "30", "--max-size", "5"], "--snapshot takes no --max-size "),
+        (["--write", "--snapshot", "3"], "--write takes no --snapshot "),
+        (["--write", "-o", "a.mcap", "--topics", "odom"], "--write takes no --output, --topics "),
+    ],
+)
+def test_flags_that_the_others_leave_no_use_for_are_refused(words, fault):
+    """They were ignored: a recorder that was to begin new files kept seconds in memory."""
+    parser = argparse.ArgumentParser()
+    record.configure(parser)
+    with pytest.raises(UsageError, match=fault):
+        record.run(parser.parse_args(words))
+
+
+@pytest.mark.parametrize("folder", ["", ".", "/"])
+def test_a_folder_without_a_name_is_no_recording(folder):
+    """Such a path has no name that a number could be appended to: a traceback."""
+    parser = argparse.ArgumentParser()
+    record.configure(parser)
+    with pytest.raises(UsageError, match="is a folder, expected the name of a new file"):
+        record._recorder(parser.parse_args(["--output", folder]), None, None)
