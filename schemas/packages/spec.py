@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 NAME = re.compile(r"[a-z][a-z0-9_-]*")  # part of keys on the bus, of file names and of commands
 OBJECT = re.compile(r"[A-Za-z_][\w.]*(:[A-Za-z_]\w*)?")
+RESERVED = ("clock", "estop", "exec", "launch", "recorder", "rosout", "tf")  # first words of keys that are no robot's
 REQUIRED = ("domain", "driver")
 OBJECTS = ("domain", "body", "topics", "sampler", "features", "draw", "generator", "scene")  # the other parts are files
 
@@ -68,6 +69,8 @@ def faults_of(spec: DomainSpec) -> tuple[str, ...]:
         for name in ("name", "robot")
         if not NAME.fullmatch(value := getattr(spec, name))
     ]
+    if spec.robot in RESERVED:
+        faults.append(f"robot is '{spec.robot}', expected another name: Tailor's own keys begin with it")
     faults += [f"{name} is empty" for name in REQUIRED if not getattr(spec, name)]
     faults += [
         f"{name} is '{value}', expected module:attribute"

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.discovery import packages
-from tailor.schemas.packages.spec import NAME
+from tailor.schemas.packages.spec import NAME, RESERVED
 
 TAKEN = ("data", "tests")  # folders beside the package
 
@@ -34,6 +34,8 @@ def _objections(name: str) -> Iterator[str]:
         yield "expected lower-case letters, digits, - and _, first a letter"
         return
     package = package_of(name)
+    if name in RESERVED:
+        yield "expected another name: keys of Tailor's own begin with it"
     if keyword.iskeyword(package):
         yield "expected another name: this is a word of Python"
     if package in TAKEN:

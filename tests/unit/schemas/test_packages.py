@@ -1,6 +1,7 @@
 """Packages of robots: found by entry points, refused with all faults in one line, parts loaded when needed."""
 
 import sys
+from dataclasses import replace
 from importlib.metadata import EntryPoint
 
 import pytest
@@ -8,7 +9,9 @@ import pytest
 from tailor.schemas import installed
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages import discovery
-from tailor.schemas.packages.spec import DomainSpec, faults_of
+from tailor.schemas.packages.spec import RESERVED, DomainSpec, faults_of
+from tailor.schemas.services import SERVICES
+from tailor.schemas.topics import TOPICS
 
 GOOD = DomainSpec("courier", "pedelec", "courier_robot.domain:make", draw="courier_robot.domain:draw")
 MODULE = """
@@ -100,6 +103,16 @@ def test_all_faults_of_a_spec_stand_in_one_line_with_file_and_field(installs):
     assert "robot is ''" in text
     assert "domain is 'no module'" in text
     assert "either draw, for the scenario files, or generator" in text
+
+
+def test_no_robot_has_a_name_with_which_keys_of_tailor_itself_begin():
+    """Its readings would pass for messages of an executive, e.g. on pages, and its topics could take their keys."""
+    ours = {topic.key for topic in TOPICS.values()} | {service.pattern for service in SERVICES.values()}
+    assert {key.partition("/")[0] for key in ours if key[0] not in "{*"} == set(RESERVED)
+    for name in RESERVED:
+        assert faults_of(replace(GOOD, robot=name)) == (
+            f"robot is '{name}', expected another name: Tailor's own keys begin with it",
+        )
 
 
 def test_a_field_that_is_no_text_is_a_fault():

@@ -61,6 +61,7 @@ def test_a_script_reads_where_the_package_lies(tmp_path: Path, capsys) -> None:
     [
         ("Cart", "expected lower-case letters"),
         ("2carts", "expected lower-case letters"),
+        ("exec", "expected another name: keys of Tailor's own begin with it"),
         ("", "expected lower-case letters"),
         ("../cart", "expected lower-case letters"),
         ("class", "a word of Python"),
