@@ -90,7 +90,7 @@ def _seconds(command: str, text: str) -> float:
     except ValueError:
         seconds = math.nan
     if not 0 < seconds < math.inf:
-        raise UsageError(f"planner '{command}': expected kairos:SECONDS with seconds above 0, e.g. kairos:5")
+        raise UsageError(f"planner '{command}': expected kairos:SECONDS or kairos:SECONDS:TICK, above 0, e.g. kairos:5")
     return seconds
 
 

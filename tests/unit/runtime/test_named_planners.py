@@ -85,6 +85,12 @@ def test_what_follows_the_colon_is_checked(command, monkeypatch):
         split_command(command)
 
 
+def test_a_tick_that_is_none_is_not_taken_for_the_seconds(monkeypatch):
+    monkeypatch.setattr(named, "find_spec", lambda name: object())
+    with pytest.raises(UsageError, match=r"expected kairos:SECONDS or kairos:SECONDS:TICK, above 0, e\.g\. kairos:5"):
+        split_command("kairos:5:0")
+
+
 def test_other_commands_are_programs():
     assert split_command("true --kairos") == ["true", "--kairos"]
     assert named.named_planner("kairos --no-anytime") is None
