@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -58,10 +58,17 @@ def add(run: RecordedRun, message: Recorded) -> str:
         report = decode(kind, message.data) if kind is not None else None
         if not isinstance(report, TickReport):
             return report.reason if isinstance(report, Rejected) else message.ros_type
+        if len({len(column) for column in _inputs(report)}) > 1:
+            return "with inputs that lack key, sender, number or arrival"
         run.ticks.append(report)
     else:
         run.published[message.key].append(message)
     return ""
+
+
+def _inputs(report: TickReport) -> tuple[Sized, ...]:
+    """What a tick says of its inputs, a column each."""
+    return report.input_keys, report.input_senders, report.input_sequences, report.input_arrivals_ns
 
 
 def _table(provenance: Provenance) -> dict[str, Any]:

@@ -64,6 +64,15 @@ def test_foreign_well_formed_ticks_are_not_a_run(tmp_path, whole, executive):
     assert runs.left_out.total() == 1
 
 
+def test_a_tick_whose_inputs_are_no_rows_counts_as_malformed(tmp_path, capsys, whole, executive):
+    """Every column has as many entries as the others; without one, `verify` ended in a traceback."""
+    last = next(m.data for m in reversed(whole) if m.key == TICK_KEY and decode(TickReport, m.data).input_keys)
+    tick = decode(TickReport, last)
+    wrong = encode(replace(tick, input_arrivals_ns=tick.input_arrivals_ns[1:]))
+    assert main(["verify", str(written(tmp_path / "a.mcap", whole, [(executive, wrong, TICK)]))]) == 0
+    assert "1 with inputs that lack key, sender, number or arrival" in capsys.readouterr().out
+
+
 def test_garbage_under_the_executives_sender_is_reported_and_the_run_is_verified(tmp_path, capsys, whole, executive):
     stop = encode(EStop(True))
     extra = [(executive, GARBAGE, TICK), (executive, GARBAGE, TICK), (executive, stop, ros_type(EStop))]
