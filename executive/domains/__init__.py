@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from importlib.resources.abc import Traversable
 from typing import Any
@@ -13,6 +12,7 @@ from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, part, spec_of
 from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.parsed_files import toml_table
 
 SCENARIO_STREAM = 0  # random stream of a run's seed; noise and search use others
 
@@ -81,4 +81,9 @@ def _scenario_files(spec: DomainSpec) -> list[str]:
 
 
 def _declaration(spec: DomainSpec, scenario: str) -> Mapping[str, Any]:
-    return tomllib.loads(_folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8"))
+    """The table of a scenario file; raises UsageError if it is no TOML."""
+    text = _folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8")
+    try:
+        return toml_table(text)
+    except ValueError as error:
+        raise UsageError(f"domain {spec.name}: {spec.scenarios}/{scenario}.toml: {error}") from None

@@ -128,3 +128,10 @@ def test_all_faults_stand_in_one_line(monkeypatch):
     assert text.startswith("the package of soccer does not hold together: ")
     assert text.count("; ") >= 4
     assert "\n" not in text
+
+
+def test_without_that_check_a_scenario_file_that_is_no_toml_is_named_too(scenarios):
+    folder, _ = scenarios
+    (folder / "bad.toml").write_bytes(b"= 3")
+    with pytest.raises(UsageError, match=r"domain soccer: .*/bad\.toml: not TOML: "):
+        domains.scenarios("soccer")
