@@ -8,7 +8,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.executive.composition import required_ranges
@@ -99,7 +99,11 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
 
 @contextmanager
 def _temporary_beside(target: Path) -> Iterator[Path]:
-    """A folder on the same disk as a target, from which moving is one step; removed at the end."""
+    """A folder on the same disk as a target, from which moving is one step; removed at the end.
+
+    So are those above it that were made for it, unless something has been moved into them.
+    """
+    made = [parent for parent in target.parents if not parent.exists()]
     target.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}-"))
     folder.chmod(0o755)
@@ -107,6 +111,9 @@ def _temporary_beside(target: Path) -> Iterator[Path]:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+        for parent in made:
+            with suppress(OSError):
+                parent.rmdir()
 
 
 def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[str], into: Path) -> list[Path]:

@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor cut`."""
     add = parser.add_argument
     add("file", help="recording (MCAP)")
-    add("-o", "--output", metavar="FILE", help="new file (default: NAME-cut.mcap)")
+    add("-o", "--output", type=Path, metavar="FILE", help="new file (default: NAME-cut.mcap)")
     add(
         "--from", dest="start", type=float, default=0.0, metavar="S", help="seconds after the first message (default 0)"
     )
@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         zero_ns + round(arguments.start * 1e9) if arguments.start else 0
     )  # the first message need not be the earliest
     end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
-    target = Path(arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap"))
+    target: Path = arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap")
 
     def keep(key: str, ros_type: str, log_ns: int) -> bool:
         return start_ns <= log_ns < end_ns and wanted.wants(key, ros_type)

@@ -14,7 +14,7 @@ from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor recover`."""
     parser.add_argument("file", help="truncated or damaged recording (MCAP)")
-    parser.add_argument("-o", "--output", metavar="FILE", help="new file (default: NAME-recovered.mcap)")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="new file (default: NAME-recovered.mcap)")
     parser.add_argument("--json", action="store_true", help="print damage and numbers of messages as JSON")
 
 
@@ -27,7 +27,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not damage.text():
         _print(arguments.json, {"file": str(source), "damage": ""}, f"{source}: not damaged, nothing to recover")
         return 0
-    target = Path(arguments.output) if arguments.output else source.with_name(f"{source.stem}-recovered.mcap")
+    target: Path = arguments.output or source.with_name(f"{source.stem}-recovered.mcap")
     copied = copy(source, target, lambda *_: True, {})
     found = {
         "file": str(source),

@@ -132,6 +132,16 @@ def test_recover_returns_1_if_nothing_could_be_recovered(tmp_path, capsys):
     assert "0 messages recovered" in capsys.readouterr().out
 
 
+def test_an_empty_name_for_a_new_file_is_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = write_tape(tmp_path / "a.mcap")
+    (tmp_path / "torn.mcap").write_bytes(path.read_bytes()[:-40])
+    for command in (["cut", "a.mcap"], ["recover", "torn.mcap"]):
+        assert main([*command, "-o", ""]) == 2
+        assert "expected the name of a new file" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.mcap", "torn.mcap"]
+
+
 # --- provenance ----------------------------------------------------------------------------------
 def with_provenance(monkeypatch, text):
     """The golden run with this text as its provenance; None: without provenance."""

@@ -224,6 +224,12 @@ def test_a_list_of_checksums_names_no_file_outside_of_its_folder(folder, capsys)
     assert "no list of checksums" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
 
 
+def test_a_refused_pull_leaves_no_folders(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert "no such folder" in refused(capsys, "pull", "--from", "./nothing", "--zoo", "new/zoo")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_models_are_no_data_sets(folder, tmp_path, capsys):
     """They were said to be missing, though they were there."""
     line = refused(capsys, "pull", "--data", "theirs", "--from", "./pushed")
