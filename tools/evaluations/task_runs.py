@@ -14,8 +14,8 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
-from tailor.schemas.installed.source import runs_sha256
 from tailor.simnodes.world import World
+from tailor.tools.evaluations.dependencies import dependencies
 from tailor.tools.evaluations.detour_controller import with_detours
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
@@ -53,7 +53,7 @@ def run_all(
       Outcomes by name of the variant and seed.
     """
     found: dict[str, dict[int, Outcome]] = {variant.name: {} for variant in variants}
-    journals = {variant.name: Journal(store, task, variant, dependencies(task)) for variant in variants}
+    journals = {variant.name: Journal(store, task, variant, dependencies(task, variant)) for variant in variants}
     wanted = []
     for seed in seeds:
         for variant in variants:
@@ -106,10 +106,3 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
     return context, start
-
-
-def dependencies(task: Task) -> list[str]:
-    """Hashes of models and source code, on which a run depends besides task, variant and seed."""
-    models: Any = cached_models(domains.load(task.domain).robot, task.zoo)
-    cards = [model.card["sha256"] for model in (*models.durations.values(), *models.successes.values())]
-    return [*sorted(cards), runs_sha256(task.domain)]

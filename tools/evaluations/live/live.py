@@ -23,6 +23,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.evaluations.dependencies import OVER_BUS, dependencies
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
@@ -31,7 +32,7 @@ from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
-from tailor.tools.evaluations.task_runs import dependencies, run_all
+from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
@@ -113,7 +114,8 @@ def _lockstep(task: Task, arguments: argparse.Namespace, seeds: Sequence[int]) -
 def _live(task: Task, arguments: argparse.Namespace, seeds: Sequence[int], stop: Stop) -> dict[int, Outcome]:
     """Live outcomes by seed; stored ones are reused."""
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
-    journal = Journal(arguments.store, task, Variant(LIVE, refinement), dependencies(task))
+    variant = Variant(LIVE, refinement)
+    journal = Journal(arguments.store, task, variant, dependencies(task, variant, OVER_BUS))
     missing = [seed for seed in seeds if seed not in journal.known]
     for seed in tracked(missing, "live"):
         config = ExecutiveConfig(task.domain, task.scenario, Settings(seed=seed, refinement=refinement), task.zoo)

@@ -14,11 +14,12 @@ import numpy as np
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.evaluations.dependencies import SEARCH, dependencies
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.oracles.grid import N_AGAIN, OTHER_NOISE, Oracle
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.progress import tracked
-from tailor.tools.evaluations.task_runs import dependencies, run_one, run_task
+from tailor.tools.evaluations.task_runs import run_one, run_task
 from tailor.tools.lockstep.run import Run
 from tailor.tools.parallel.pool import completed
 
@@ -51,7 +52,8 @@ def search_choices(
     """
     refined = Variant(f"oracle-{runs}", replace(RefinementSettings(), horizon=horizon))
     names = ("half", "all", *(f"again-{k}" for k in range(1, N_AGAIN + 1)))
-    journals = [Journal(store, task, replace(refined, name=f"{refined.name}-{n}"), dependencies(task)) for n in names]
+    known = dependencies(task, refined, SEARCH)
+    journals = [Journal(store, task, replace(refined, name=f"{refined.name}-{n}"), known) for n in names]
     found = {seed: [j.known[seed] for j in journals] for seed in seeds if all(seed in j.known for j in journals)}
     wanted = [seed for seed in seeds if seed not in found]
     running = completed(search_start, [(task, refined, seed, runs) for seed in wanted], jobs)

@@ -1,4 +1,4 @@
-"""Reports of learners state which source, models and seeds they are of, as all other reports do."""
+"""Reports state which source, models and seeds they are of, and stored runs of other source do not count."""
 
 import json
 
@@ -7,10 +7,13 @@ import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
 from tailor.models.training import learners
+from tailor.tools.evaluations import dependencies
 from tailor.tools.evaluations.models import fresh
+from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.seeds import FIRST_SEED
 from tailor.tools.main import main
 
+TASK, PLAIN, HAND_MADE = Task("soccer", "approach"), Variant("h2"), Variant("baseline", hand_made=True)
 KEYS = {"first_seed", "seed_derived", "source_sha256", "models_sha256"}
 
 
@@ -24,6 +27,33 @@ def drawn(robot: str, action: str, count: int, seed: int, jobs: int, store: obje
         for k, (row, way) in enumerate(zip(arguments, distance.tolist(), strict=True))
     ]
     return DataSet({}, tuple(episodes), "")
+
+
+@pytest.fixture
+def hashed_after(monkeypatch):
+    """The dependencies of a run once the files of some names have changed."""
+
+    def found(changed, *arguments):
+        monkeypatch.setattr(dependencies, "content_sha256", lambda path: f"{path.name} {path.name in changed}")
+        return dependencies.dependencies(TASK, *arguments)
+
+    return found
+
+
+@pytest.mark.parametrize(
+    ("changed", "arguments"),
+    [
+        ("detour_graph.py", (HAND_MADE,)),
+        ("detour_controller.py", (HAND_MADE,)),
+        ("search.py", (PLAIN, dependencies.SEARCH)),
+        ("shell.py", (PLAIN, dependencies.OVER_BUS)),
+        ("loop.py", (PLAIN, dependencies.OVER_BUS)),
+        ("system.py", (PLAIN, dependencies.OVER_BUS)),
+    ],
+)
+def test_a_file_that_only_some_runs_depend_on_counts_for_these(changed, arguments, hashed_after):
+    assert hashed_after([changed], *arguments) != hashed_after([], *arguments)
+    assert hashed_after([changed], PLAIN) == hashed_after([], PLAIN)
 
 
 @pytest.mark.parametrize("name", ["duration-learners", "failure-learners", "feature-spaces"])
