@@ -11,7 +11,8 @@ from tailor.schemas.installed.source_text import content_sha256
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.learning.gathering.choosing_models import cached_models
 
-# Files that only some runs depend on, as patterns below ROOT; `runs_sha256` stands for those that all depend on.
+# Files that make or summarise runs, as patterns below ROOT, besides those of `runs_sha256`; the latter ones only some.
+EVERY = tuple(f"tools/evaluations/{name}.py" for name in ("costs", "outcome", "pinned", "task_runs"))
 HAND_MADE = ("tools/evaluations/detour_*.py",)
 SEARCH = ("tools/evaluations/oracles/search.py",)
 OVER_BUS = (
@@ -34,6 +35,6 @@ def dependencies(task: Task, variant: Variant, others: Sequence[str] = ()) -> li
     """
     models: Any = cached_models(domains.load(task.domain).robot, task.zoo)
     cards = [model.card["sha256"] for model in (*models.durations.values(), *models.successes.values())]
-    patterns = (*(HAND_MADE if variant.hand_made else ()), *others)
+    patterns = (*EVERY, *(HAND_MADE if variant.hand_made else ()), *others)
     files = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
     return [*sorted(cards), runs_sha256(task.domain), *map(content_sha256, files)]

@@ -56,6 +56,11 @@ def test_a_file_that_only_some_runs_depend_on_counts_for_these(changed, argument
     assert hashed_after([changed], PLAIN) == hashed_after([], PLAIN)
 
 
+@pytest.mark.parametrize("changed", ["costs.py", "outcome.py", "pinned.py", "task_runs.py"])
+def test_what_makes_and_measures_every_run_counts_for_all(changed, hashed_after):
+    assert hashed_after([changed], PLAIN) != hashed_after([], PLAIN)
+
+
 @pytest.mark.parametrize("name", ["duration-learners", "failure-learners", "feature-spaces"])
 @pytest.mark.parametrize("seed", [None, 5])
 def test_a_report_of_learners_states_its_seeds_and_hashes(name, seed, tmp_path, monkeypatch, capsys) -> None:
