@@ -11,7 +11,8 @@ from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
+from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
+from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
@@ -88,7 +89,8 @@ RESUME = "--resume"
 STOPPED = 130
 EPILOG = """
 `tailor evaluate NAME --help` lists the flags of one evaluation. With `all`, each takes the flags that it has.
---resume: skip evaluations with a page in the report's folder. Finished episodes are kept in any case.
+--resume: skip evaluations with a page of this source and these models in the report's folder. Finished episodes are
+kept in any case.
 
 examples:
   tailor evaluate refinement --domain soccer --scenario approach-dribble --json
@@ -146,7 +148,7 @@ def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
     """Run each evaluation; returns the maximum of their exit codes."""
     code = 0
     for name, module, settings in chosen:
-        if resume and settings.report is not None and page_is_there(settings.report, name):
+        if resume and settings.report is not None and _is_done(name, module, settings):
             continue
         done = _run_one(name, module, settings, everything)
         if settings.report is not None:
@@ -155,6 +157,12 @@ def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
             return STOPPED
         code = max(code, done)
     return code
+
+
+def _is_done(name: str, module: Any, settings: argparse.Namespace) -> bool:
+    """Whether the report's folder holds this evaluation's page, made of the source and the models of now."""
+    domain = settings.domain or _domains_of(module)[0]
+    return page_is_of(settings.report, name, seeds_of(domain, settings).provenance)
 
 
 def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:

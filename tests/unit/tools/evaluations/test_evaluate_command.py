@@ -13,6 +13,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.pages.overview import write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.launch import package_check
 from tailor.tools.main import main
 
@@ -86,6 +87,17 @@ def test_resume_leaves_out_what_has_a_page(tmp_path, capsys):
     main(["evaluate", "first", "--report", str(tmp_path)])
     assert main(["evaluate", "first", "second", "--report", str(tmp_path), "--resume"]) == 1
     assert CALLS == ["first", "second"]
+
+
+@pytest.mark.parametrize("other", ["source_sha256", "models_sha256", ""])
+def test_resume_makes_pages_of_other_source_or_models_anew(other, tmp_path, capsys, monkeypatch):
+    hashes = dict.fromkeys(("source_sha256", "models_sha256"), "a" * 64)
+    monkeypatch.setattr(evaluate, "seeds_of", lambda *_: Seeds(1, hashes))
+    main(["evaluate", "first", "--report", str(tmp_path)])
+    page = tmp_path / "first.json"
+    page.write_text(json.dumps({**json.loads(page.read_text()), "provenance": {**hashes, other: "b" * 64}}))
+    main(["evaluate", "first", "--report", str(tmp_path), "--resume"])
+    assert CALLS.count("first") == (2 if other else 1)
 
 
 def test_a_page_that_was_broken_off_is_made_again(tmp_path, capsys):
