@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,8 +13,14 @@ from scipy import stats
 
 from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.paired_comparison import p_shown
 
 Array = NDArray[np.float64]
+NO_INTERVAL = {"ci95_pct": (math.nan, math.nan)}
+UNKNOWN = (  # of fewer than two runs that achieved their goals
+    "mean_lockstep_s", "mean_s", "difference_pct", "p_value", "p_rank", "p_equivalent", "within_range_pct",
+    "within_range_expected_pct",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +59,14 @@ def starts_of(runs: Mapping[int, Outcome], repeats: Mapping[int, Sequence[Outcom
 
 
 def agreement(starts: Starts, margin_pct: float) -> dict[str, Any]:
-    """The figures of a row; percentages are of durations, positive is longer than lock-step.
+    """The figures of a row; percentages are of durations, positive is longer than lock-step; NaN of fewer than two.
 
     `p_rank` is of the mean rank: were the runs lock-step's, every rank would be as likely, and as many as
     `within_range_expected_pct` says would be neither shorter nor longer than all lock-step runs of their start.
     """
     ratios, n = starts.log_ratio, len(starts.seeds)
+    if n < 2:
+        return {"n": n, "margin_pct": margin_pct, "equivalent": False, **dict.fromkeys(UNKNOWN, math.nan)} | NO_INTERVAL
     test = equivalence(np.zeros(n), ratios, float(np.log1p(margin_pct / 100)))
     deviation = (starts.rank.mean() - 0.5) * np.sqrt(12 * n)
     inside = [r.min() <= s <= r.max() for s, r in zip(starts.run_s, starts.lockstep_s, strict=True)]
@@ -75,6 +84,11 @@ def agreement(starts: Starts, margin_pct: float) -> dict[str, Any]:
         "within_range_pct": 100 * float(np.mean(inside)),
         "within_range_expected_pct": 100 * float(np.mean([(len(r) - 1) / (len(r) + 1) for r in starts.lockstep_s])),
     }
+
+
+def with_thresholds(row: Mapping[str, Any]) -> dict[str, Any]:
+    """The row for a report: p-values below the threshold are not told apart."""
+    return {name: p_shown(value) if name.startswith("p_") else value for name, value in row.items()}
 
 
 def _percent(log_ratio: float) -> float:

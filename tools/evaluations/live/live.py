@@ -25,7 +25,7 @@ from tailor.schemas.messages import Message
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.dependencies import OVER_BUS, dependencies
 from tailor.tools.evaluations.journal import Journal
-from tailor.tools.evaluations.live.agreement import agreement, starts_of
+from tailor.tools.evaluations.live.agreement import agreement, starts_of, with_thresholds
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
@@ -93,11 +93,8 @@ def run(arguments: argparse.Namespace) -> int:
         starts = {name: starts_of(runs, repeats) for name, runs in found.items()}
         plots["durations and differences"] = draw_agreement(starts, MARGIN_PCT, arguments.report / "live.png")
     title = f"Live over the bus against lock-step: {arguments.scenario}"
-    publish_report(
-        Report("live", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
-        arguments.json,
-        arguments.report,
-    )
+    shown, provenance = [with_thresholds(row) for row in rows], seeds_of("soccer", arguments).provenance
+    publish_report(Report("live", title, shown, REMARKS, plots, provenance), arguments.json, arguments.report)
     live = rows[0]
     alike = min(live["p_value"], live["p_rank"]) > 0.05
     return 0 if alike and live["achieved_pct"] >= live["achieved_lockstep_pct"] - 5 else 1

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tailor.tools.evaluations.live import live
-from tailor.tools.evaluations.live.agreement import agreement, starts_of
+from tailor.tools.evaluations.live.agreement import agreement, starts_of, with_thresholds
 from tailor.tools.evaluations.live.bus_run import run_of
 from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.live.live_plot import draw_agreement
@@ -100,6 +100,23 @@ def test_a_live_run_that_failed_is_counted_and_says_why():
     assert (row["n"], row["achieved_lockstep_pct"]) == (2, 100.0)
     assert row["achieved_pct"] == pytest.approx(200 / 3)
     assert row["failures"] == "failed: the driver is stopped"
+
+
+@pytest.mark.parametrize("achieved", [0, 1])
+def test_live_runs_that_nearly_all_fail_have_a_row_without_durations(achieved, tmp_path):
+    runs = {seed: replace(DONE, achieved=seed < achieved, result="failed: late") for seed in range(3)}
+    repeats = {seed: [DONE, DONE] for seed in runs}
+    row = live._row("live", 2, runs, repeats)
+    assert (row["n"], row["failures"], row["equivalent"]) == (achieved, "failed: late", False)
+    assert row["achieved_pct"] == pytest.approx(100 * achieved / 3)
+    assert np.isnan([row["p_value"], row["p_rank"], *row["ci95_pct"]]).all()
+    put = {name: starts_of(runs, repeats) for name in ("live", "once more")}
+    assert draw_agreement(put, MARGIN_PCT, tmp_path / "live.png").exists()
+
+
+def test_p_values_of_a_report_are_given_down_to_the_threshold():
+    row = with_thresholds(agreement(drawn(np.random.default_rng(1), 1.2, 20), MARGIN_PCT))
+    assert (row["p_value"], row["p_rank"], row["p_equivalent"]) == ("< 0.001", "< 0.001", 1.0)
 
 
 def test_agreement_is_drawn(tmp_path):
