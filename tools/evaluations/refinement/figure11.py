@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
@@ -59,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     task = Task(*TASK, "", arguments.zoo)
     seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
     sweeps = [sweep for seed in seeds if (sweep := _swept(task, seed, arguments)) is not None]
+    if not sweeps:
+        raise UsageError(f"--episodes {arguments.episodes}: no start had a free angle and ended well, expected more")
     rows = [_row(sweep) for sweep in sweeps]
     rows.append(_mean(rows))
     plots = {}

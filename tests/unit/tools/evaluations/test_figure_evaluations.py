@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ActionFinished
 from tailor.tools.evaluations.assertion import figure15
 from tailor.tools.evaluations.assertion.subgoal_map import subgoal_map_of
@@ -78,6 +80,13 @@ def test_sweep_leaves_out_a_run_that_reached_its_goal_without_an_approach():
     done = replace(DONE, predicted_actions=FORESEEN)
     sweep = sweep_of(1, np.array([0.0, 1.0]), 0.2, [[aborted], [done]], 0.0, 0.0)
     assert np.isnan(sweep.simulated_s[:, 0]).all()
+
+
+def test_a_figure_without_any_sweep_is_a_usage_error(monkeypatch):
+    monkeypatch.setattr(figure11, "_swept", lambda *_: None)
+    given = argparse.Namespace(zoo="", seed=1, episodes=2)
+    with pytest.raises(UsageError, match="--episodes 2: no start had a free angle"):
+        figure11.run(given)
 
 
 def test_duration_between_two_angles_wraps_round_the_circle():
