@@ -16,15 +16,16 @@ def draw_pairs(greedy_s: Sequence[float], refined_s: Sequence[float], path: Path
     """Scatter plot of greedy and refined durations, and histogram of the improvement."""
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    top = 1.05 * max(*greedy_s, *refined_s)
+    top = 1.05 * max([*greedy_s, *refined_s], default=1.0)
     left.plot([0, top], [0, top], color=PALE)
     left.scatter(greedy_s, refined_s, s=9, color=INK, alpha=0.6)
     left.set(xlabel="greedy (s)", ylabel="refined (s)", xlim=(0, top), ylim=(0, top), title="duration of an episode")
     gain = 100 * (1 - np.asarray(refined_s) / np.asarray(greedy_s))
     right.hist(gain, bins=40, color=PALE)
-    right.axvline(float(gain.mean()), color=ACCENT, label=f"mean {gain.mean():.1f} %")
     right.set(xlabel="improvement (%)", ylabel="episodes", title="improvement of an episode")
-    right.legend(frameon=False)
+    if len(gain):
+        right.axvline(float(gain.mean()), color=ACCENT, label=f"mean {gain.mean():.1f} %")
+        right.legend(frameon=False)
     return _saved(figure, path)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import (
     MIN_UNITS,
+    Comparison,
     Difference,
     Units,
     compare,
@@ -31,20 +33,18 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
     """Columns of a row.
 
     Durations, arrivals and energy are of the pairs in which both achieved the goal; failures, contacts and costs of
-    this robot alone are of all. Over fewer than MIN_UNITS scenarios there are neither intervals nor p-values.
+    this robot alone are of all. Over fewer than MIN_UNITS scenarios there are neither intervals nor p-values. Where
+    fewer than two units are left to compare, durations are NaN: that nearly all fail is a result, too.
 
     Args:
       pairs: Outcomes by start.
       unit: "start", or "scenario": the starts of a scenario are one unit.
-
-    Raises:
-      UsageError: Fewer than two units in which both achieved the goal.
     """
     kept = {start: pair for start, pair in pairs.items() if pair[0].achieved and pair[1].achieved}
     units = None if unit == "start" else [scenario for scenario, _ in kept]
     every = None if unit == "start" else [scenario for scenario, _ in pairs]
     both = list(kept.values())
-    times = compare([greedy.duration_s for greedy, _ in both], [refined.duration_s for _, refined in both], units)
+    times = _times(both, units)
     row = {
         "n": times.n,
         "unit": unit,
@@ -62,6 +62,14 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         "bias_refined_s": bias_s(pair[1] for pair in both),
     }
     return row if unit == "start" or times.units >= MIN_UNITS else without_intervals(row)
+
+
+def _times(pairs: Sequence[Pair], units: Units | None) -> Comparison:
+    count = len(pairs if units is None else set(units))
+    if count < 2:
+        unknown = math.nan
+        return Comparison(len(pairs), count, unknown, unknown, unknown, (unknown, unknown), unknown, unknown, unknown)
+    return compare([greedy.duration_s for greedy, _ in pairs], [refined.duration_s for _, refined in pairs], units)
 
 
 def is_better(row: Mapping[str, Any]) -> bool:

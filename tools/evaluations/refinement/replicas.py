@@ -94,7 +94,8 @@ def over_models(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _over(rows: list[dict[str, Any]]) -> dict[str, Any]:
     gains = np.array([row["improvement_pct"] for row in rows])
-    means = [key for key in rows[0] if key.startswith("mean_") or key.endswith(("_greedy", "_refined"))]
+    shared = [key for key in rows[0] if all(key in row for row in rows)]  # a set whose runs all fail lacks some
+    means = [key for key in shared if key.startswith("mean_") or key.endswith(("_greedy", "_refined"))]
     return {
         "scenario": rows[0]["scenario"],
         "model": f"{len(rows)} sets of models",

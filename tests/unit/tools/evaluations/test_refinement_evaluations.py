@@ -20,10 +20,12 @@ from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.oracles import grid
 from tailor.tools.evaluations.oracles.grid import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.evaluations.refinement import ablations, figure1, figure11, refinement_rows, replicas, table3, table4
 from tailor.tools.evaluations.refinement.baselines import against_oracle
+from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_better
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired
 from tailor.tools.learning.recipe import read_recipe, recipe_path
@@ -266,6 +268,18 @@ def test_scenarios_have_starts_of_their_own(monkeypatch):
     rows, _ = refinement_rows.rows_of("arm", ["letter-A", "letter-B"], Seeds(100, {}), given)
     assert ran == {"letter-A": range(100, 104), "letter-B": range(104, 108)}
     assert [row["n"] for row in rows] == [4, 4, 8]
+
+
+@pytest.mark.parametrize("achieved", [0, 1])
+def test_a_scenario_that_nearly_always_fails_has_a_row_with_its_failures(achieved, tmp_path):
+    failed = replace(DONE, achieved=False)
+    pairs = {("a", seed): (DONE, DONE if seed < achieved else failed) for seed in range(4)}
+    row = columns(pairs)
+    assert (row["n"], row["failed"], row["failures_pct_refined"]) == (achieved, 4 - achieved, 100 - 25 * achieved)
+    assert np.isnan([row["improvement_pct"], *row["ci95"]]).all()
+    assert not is_better(row)
+    durations_s = [DONE.duration_s] * achieved
+    assert draw_pairs(durations_s, durations_s, tmp_path / "pairs.png").exists()
 
 
 def test_a_set_of_models_has_a_seed_of_training_of_its_own(monkeypatch, tmp_path):
