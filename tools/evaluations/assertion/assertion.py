@@ -14,7 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
-from tailor.tools.evaluations.paired_comparison import share_interval
+from tailor.tools.evaluations.paired_comparison import mean_interval, share_interval
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
 
@@ -31,7 +31,7 @@ REMARKS = (
     "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
     "succeeds. slower: in the mean, against before, where both succeed; of after where the subgoal was needless; "
     "baseline needless slower: of the baseline from these starts, where before may have been lucky.",
-    "after to baseline: how much slower after is than the baseline where both succeed; 95 % interval by start.",
+    "after to baseline: how much slower after is than the baseline where both succeed; 95 % intervals by start.",
 )
 
 Outcomes = Mapping[int, Outcome]  # by seed
@@ -83,6 +83,7 @@ def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
         "ci95_after": share_interval(len(successes[AFTER]), n),
         "needless_pct": 100 * len(needless) / n,
         "needless_slower_pct": slower_pct(before, after, needless)[0],
+        "ci95_needless_slower": slower_pct(before, after, needless)[1],
         "baseline_needless_slower_pct": slower_pct(before, baseline, needless)[0],
         "baseline_success_pct": 100 * len(successes[BASELINE]) / n,
         "ci95_baseline": share_interval(len(successes[BASELINE]), n),
@@ -108,8 +109,7 @@ def slower_pct(first: Outcomes, second: Outcomes, seeds: Sequence[int]) -> tuple
     if len(both) < 2:
         return float("nan"), (float("nan"), float("nan"))
     more = np.array([100 * (second[seed].duration_s / first[seed].duration_s - 1) for seed in both])
-    mean, half = float(more.mean()), 1.96 * float(more.std(ddof=1)) / len(both) ** 0.5
-    return mean, (mean - half, mean + half)
+    return float(more.mean()), mean_interval(more)
 
 
 def reached(figures: Mapping[str, Any]) -> bool:

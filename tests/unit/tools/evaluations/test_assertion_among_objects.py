@@ -117,3 +117,12 @@ def test_a_row_counts_contacts_as_failures_and_needless_subgoals():
     assert not assertion.reached(row)
     assert assertion.reached({"success_after_pct": 98.5, "needless_slower_pct": 7.0})
     assert not assertion.reached({"success_after_pct": 99.5, "needless_slower_pct": 9.0})
+
+
+def test_what_a_few_needless_subgoals_cost_has_the_interval_of_a_few():
+    before = {seed: outcome(10.0) for seed in range(3)}
+    after = {seed: outcome(10.0 + seed, asserted=True) for seed in range(3)}
+    row = assertion.row({"before": before, "after": after, "baseline": before}, range(3))
+    assert row["needless_slower_pct"] == pytest.approx(10)
+    assert row["ci95_needless_slower"] == pytest.approx((10 - 4.303 * 10 / 3**0.5, 10 + 4.303 * 10 / 3**0.5), abs=0.01)
+    assert row["ci95_after_to_baseline"] == row["ci95_needless_slower"]
