@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import argparse
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, finite
+from tailor.tools.evaluations.costs import costs_of
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, p_shown
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_task
-from tailor.tools.lockstep.run import Run
-from tailor.tools.lockstep.task_sampler import sampler_of
 from tailor.tools.parallel.pool import completed, in_order
 
 WEIGHTS = (0.0, 0.3, 1.0, 3.0)  # seconds that a joule is worth; the first is compared with
@@ -69,16 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
 def cost_of(task: Task, weight: float, seed: int) -> Cost:
     """Run one episode with a weight of energy in s/J."""
     variant = Variant(f"joule {weight:g}", RefinementSettings(energy_weight=weight))
-    run, _ = run_task(task, variant, seed)
-    return Cost(run.achieved, run.duration_s, energy_j(run, task.domain))
-
-
-def energy_j(run: Run, domain: str) -> float:
-    """Work of the drives over an episode's actions."""
-    work = sampler_of(domains.load(domain)).work_j
-    truth: list[Any] = run.truth
-    during = [state for state in truth if run.started_s <= state.stamp_ns * 1e-9 <= run.ended_s]
-    return float(sum(work(before, after) for before, after in itertools.pairwise(during)))
+    run, context = run_task(task, variant, seed)
+    return Cost(run.achieved, run.duration_s, costs_of(run, context.domain).energy_j)
 
 
 def _row(weight: float, first: float, seeds: Sequence[int], found: dict[tuple[float, int], Cost]) -> dict[str, Any]:

@@ -23,11 +23,20 @@ from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
 from tailor.tools.evaluations.pinned import PinnedDomain
-from tailor.tools.evaluations.refinement import ablations, figure1, figure11, refinement_rows, replicas, table3, table4
+from tailor.tools.evaluations.refinement import (
+    ablations,
+    energy,
+    figure1,
+    figure11,
+    refinement_rows,
+    replicas,
+    table3,
+    table4,
+)
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_better
 from tailor.tools.evaluations.seeds import Seeds
-from tailor.tools.evaluations.task_runs import paired
+from tailor.tools.evaluations.task_runs import paired, run_one
 from tailor.tools.learning.recipe import read_recipe, recipe_path
 
 DONE = Outcome(
@@ -280,6 +289,13 @@ def test_a_scenario_that_nearly_always_fails_has_a_row_with_its_failures(achieve
     assert not is_better(row)
     durations_s = [DONE.duration_s] * achieved
     assert draw_pairs(durations_s, durations_s, tmp_path / "pairs.png").exists()
+
+
+@pytest.mark.parametrize("scenario", ["approach-dribble", "opponents"])
+def test_energy_is_known_whatever_else_the_ground_truth_tells_of(scenario):
+    task = Task("soccer", scenario)
+    cost = energy.cost_of(task, 0.0, 700_000)
+    assert cost.energy_j == run_one(task, Variant("x"), 700_000).costs.energy_j > 0.1
 
 
 def test_a_set_of_models_has_a_seed_of_training_of_its_own(monkeypatch, tmp_path):
