@@ -58,12 +58,12 @@ def noise_floor(robot: str, action: str, tasks: Array, seed: int, jobs: int) -> 
 
     Returns:
       For each task, shape (n,): mean distance of its durations to their median (s, corrected for the number of runs),
-      and the share of runs that end as most of them do.
+      and the share of runs that end as most of them do. Runs that do not finish have no duration, as for the model.
     """
     wanted = [(robot, action, arguments, seed, number) for number, arguments in enumerate(tasks)]
     runs = in_order(completed(_repeated, wanted, jobs))
     durations, successes = (np.array(column) for column in zip(*runs, strict=True))
-    off = np.abs(durations - np.median(durations, axis=1, keepdims=True)).mean(axis=1)
+    off = np.array([np.abs(some - np.median(some)).mean() if len(some) else 0.0 for some in map(_finite, durations)])
     share = successes.mean(axis=1)
     return off * OF_OWN_MEDIAN, np.maximum(share, 1 - share)
 
@@ -75,7 +75,12 @@ def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -
         action_run.run_action(body, domain, action, arguments, np.random.default_rng([NOISE_STREAM, seed, task, k]))
         for k in range(REPEATS)
     ]
-    return np.array([run.duration_s for run in runs]), np.array([run.success for run in runs])
+    durations_s = [run.duration_s if run.done else np.nan for run in runs]
+    return np.array(durations_s), np.array([run.success for run in runs])
+
+
+def _finite(values: Array) -> Array:
+    return values[np.isfinite(values)]
 
 
 def _ratio(off_s: Array, floor_s: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:

@@ -16,6 +16,7 @@ from tailor.models.episodes.examples import duration_examples, success_examples
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.runtime import load_robot
 from tailor.models.training import scores
+from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
@@ -30,6 +31,7 @@ REMARKS = (
     "MAE: of the fresh episodes that finished, 95 % interval over episodes; bias: predicted minus observed; noise "
     "floor: repeated runs of the first 1000 of these tasks with other noise; over floor: the error on the same tasks "
     "as a multiple of it, bootstrap over tasks; failures: predicted and observed, of all fresh episodes; "
+    "constant accuracy: of who always predicts the more frequent outcome; "
     "coverage: share of durations within the interval that is to hold 90 %, and in thirds of predicted spread",
 )
 
@@ -59,7 +61,7 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
       floors: Also measure the noise floors, which do not depend on the models.
 
     Raises:
-      UsageError: No such domain, or its models are missing or altered.
+      UsageError: No such domain, its models are missing or altered, or no episode of an action finished.
     """
     declared = domains.load(domain)
     zoo = Path(arguments.zoo) if arguments.zoo else models_folder(declared.robot)
@@ -68,6 +70,8 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     made = []
     for name, action in tracked(sorted(declared.actions.items()), "actions"):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
+        if not any(episode.finished for episode in data.episodes):
+            raise UsageError(f"{name}: none of {len(data.episodes)} fresh episodes finished, expected some to judge by")
         row = {"domain": domain, "action": name, **duration_columns(durations, action.duration_model, data, seed)}
         row |= _failures(successes[action.success_model], data) if action.success_model else {}
         row |= floor_columns(row, data, (declared.robot, name, seed, arguments.jobs)) if floors else {}
@@ -110,11 +114,13 @@ def _failures(model: OnnxSuccess, data: DataSet) -> Row:
     examples = success_examples(data.episodes, 1)
     probability, observed = model.probability(examples.arguments), examples.targets > 0.5
     table = scores.confusion(probability >= model.threshold, observed)
+    failures_pct = table.fail_fail + table.success_fail
     return {
         "failure_accuracy_pct": table.accuracy,
+        "constant_accuracy_pct": max(failures_pct, 100 - failures_pct),
         "missed_failures_pct": table.success_fail,
         "false_alarms_pct": table.fail_success,
-        "failures_pct": table.fail_fail + table.success_fail,
+        "failures_pct": failures_pct,
         "even_cost_accuracy_pct": scores.confusion(probability >= 0.5, observed).accuracy,
         "brier": float(np.mean((probability - observed) ** 2)),
     }

@@ -1,12 +1,13 @@
 """tailor evaluate models: rows of random arguments, and of the executive's own choices."""
 
+import argparse
 import json
 
 import numpy as np
 import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
-from tailor.tools.evaluations.models import floors
+from tailor.tools.evaluations.models import floors, fresh, model_rows
 from tailor.tools.evaluations.models.model_rows import duration_columns
 from tailor.tools.figures.learned_models import reports
 from tailor.tools.main import main
@@ -80,3 +81,39 @@ def test_a_ratio_is_known_as_soon_as_some_task_has_noise(monkeypatch):
         monkeypatch.setattr(floors, "noise_floor", lambda *_, floor_s=floor_s: (np.array(floor_s), np.ones(4)))
         ratio = floors.floor_columns(row, data, ("r", "a", 1, 1)).get("over_floor")
         assert ratio == (expected and pytest.approx(expected))
+
+
+class Sure:
+    """Predicts that every action succeeds."""
+
+    threshold = 0.5
+
+    def probability(self, arguments):
+        return np.ones(len(arguments))
+
+
+def test_a_failure_model_is_shown_beside_one_that_predicts_nothing():
+    episodes = tuple(Episode(k, np.zeros(1), np.zeros((2, 1)), 1.0, k > 0, "" if k else "late") for k in range(10))
+    row = model_rows._failures(Sure(), DataSet({}, episodes, ""))
+    assert (row["failure_accuracy_pct"], row["missed_failures_pct"]) == (90.0, 10.0)
+    assert row["constant_accuracy_pct"] == 90.0
+
+
+def test_runs_that_do_not_finish_have_no_share_in_the_noise_floor(monkeypatch):
+    """A model is judged by the episodes that finished, and the time limit is no noise that it could not predict."""
+    ends = iter([(4.0, True)] * 7 + [(40.0, False)])
+
+    def run_action(*_):
+        duration_s, done = next(ends)
+        return argparse.Namespace(duration_s=duration_s, done=done, success=done)
+
+    monkeypatch.setattr(floors.action_run, "run_action", run_action)
+    floor_s, alike = floors.noise_floor("agilo", "goToPose", np.zeros((1, 8)), 1, 1)
+    assert (floor_s.tolist(), alike.tolist()) == ([0.0], [7 / 8])
+
+
+def test_an_action_that_never_finishes_is_named(monkeypatch, capsys, tmp_path):
+    episode = Episode(0, np.zeros(10), np.zeros((2, 10)), 40.0, False, "time limit", finished=False)
+    monkeypatch.setattr(fresh, "evaluation", lambda *_: DataSet({}, (episode,) * 6, ""))
+    assert main(["evaluate", "models", "--domain", "arm", "--episodes", "6", "--store", str(tmp_path)]) == 2
+    assert "reach: none of 6 fresh episodes finished, expected some to judge by" in capsys.readouterr().err
