@@ -34,8 +34,9 @@ def run(arguments: argparse.Namespace) -> int:
     arguments = seeded(arguments)
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
-    train = duration_examples(fresh.training(*common, PAPER_EPISODES, *more).episodes, N_I)
-    test = duration_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
+    gathered = fresh.training(*common, PAPER_EPISODES, *more), fresh.evaluation(*common, arguments.episodes, *more)
+    finished = ([episode for episode in data.episodes if episode.finished] for data in gathered)
+    train, test = (duration_examples(some, n_i) for some, n_i in zip(finished, (N_I, 1), strict=True))
     rows: list[dict[str, Any]] = []
     for name in tracked(ORDER, "feature spaces"):
         space = feature_space(name)

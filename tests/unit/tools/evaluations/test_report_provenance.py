@@ -1,6 +1,7 @@
 """Reports state which source, models and seeds they are of, and stored runs of other source do not count."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,3 +77,17 @@ def test_a_report_of_learners_states_its_seeds_and_hashes(name, seed, tmp_path, 
     assert about["first_seed"] == seed if seed is not None else about["first_seed"] >= FIRST_SEED
     assert f"seeds from {about['first_seed']}" in printed["remarks"][-1]
     assert json.loads((tmp_path / f"{name}.json").read_text())["provenance"] == about
+
+
+def test_feature_spaces_learn_from_episodes_that_finished(tmp_path, monkeypatch, capsys) -> None:
+    """The time limit is not the duration of an action."""
+
+    def gathered(*arguments: object) -> DataSet:
+        data = drawn("", "", 3, 1, 1, None)
+        late = [replace(each, number=60 + each.number, duration_s=900.0, finished=False) for each in data.episodes[:20]]
+        return replace(data, episodes=(*data.episodes, *late))
+
+    monkeypatch.setattr(fresh, "training", gathered)
+    monkeypatch.setattr(fresh, "evaluation", gathered)
+    main(["evaluate", "feature-spaces", "--json", "--store", str(tmp_path)])
+    assert all(row["mae_s"] < 1.0 for row in json.loads(capsys.readouterr().out)["rows"])
