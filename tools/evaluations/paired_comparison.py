@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Units = Sequence[str | int]
 P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000
+SAME = 1e-9  # share by which equal differences of seconds may differ, as their sums are rounded
 MIN_UNITS = 3  # the t-interval over two is 12.7 standard errors wide either way, whatever happened within each
 
 
@@ -85,7 +86,7 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = N
         float(second.mean()),
         100 * float(ratios.mean()),
         (100 * low, 100 * high),
-        1.0 if same else float(stats.ttest_rel(firsts, seconds).pvalue),
+        _dependent_t_test(firsts, seconds),
         1.0 if same else float(stats.wilcoxon(firsts, seconds).pvalue),
         100 * float(np.mean(second > first)),
     )
@@ -94,9 +95,7 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = N
 def compare_means(first: ArrayLike, second: ArrayLike, units: Units | None = None) -> Difference:
     """Compare a cost of at least two units by the dependent t-test; shapes (n,)."""
     one, other = (by_unit(values, units) for values in _paired(first, second))
-    same = bool(np.all(one == other)) or len(one) < 2
-    p_value = 1.0 if same else float(stats.ttest_rel(one, other).pvalue)
-    return Difference(float(one.mean()), float(other.mean()), mean_interval(other - one), p_value)
+    return Difference(float(one.mean()), float(other.mean()), mean_interval(other - one), _dependent_t_test(one, other))
 
 
 def compare_shares(first: ArrayLike, second: ArrayLike, units: Units | None = None) -> Difference:
@@ -155,6 +154,19 @@ def without_intervals(row: Mapping[str, Any]) -> dict[str, Any]:
 def p_shown(p_value: float) -> float | str:
     """A p-value for a table: three decimals, or that it is below the threshold."""
     return f"< {P_THRESHOLD}" if p_value < P_THRESHOLD else round(p_value, 3)
+
+
+def _dependent_t_test(first: Array, second: Array) -> float:
+    """Its p-value, two-sided; where all differences are one and the same, as of ticks, that of the sign test.
+
+    Without any spread t is infinite, however few they are.
+    """
+    apart = second - first
+    if len(apart) < 2 or not apart.any():
+        return 1.0
+    if np.ptp(apart) <= SAME * np.abs(apart).max():
+        return float(2.0 ** (1 - len(apart)))
+    return float(stats.ttest_rel(first, second).pvalue)
 
 
 def _paired(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:

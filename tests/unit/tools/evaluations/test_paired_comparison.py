@@ -74,6 +74,14 @@ def test_means_are_compared_pair_by_pair():
     assert found.ci95[1] - found.ci95[0] < 0.2
 
 
+@pytest.mark.parametrize("count", [2, 3, 12])
+def test_differences_without_spread_are_no_more_significant_than_their_number(count):
+    """Durations are whole ticks, so that a few pairs may differ by the very same; t would be infinite."""
+    greedy = 10 + 0.1 * np.arange(count)
+    assert compare(greedy, greedy - 0.3).p_value == pytest.approx(2.0 ** (1 - count))
+    assert compare_means(greedy, greedy - 0.3).p_value == pytest.approx(2.0 ** (1 - count))
+
+
 def test_the_interval_of_a_ratio_holds_it_and_narrows_with_more_starts():
     rng = np.random.default_rng(2)
     wholes = rng.uniform(1, 3, 400)
