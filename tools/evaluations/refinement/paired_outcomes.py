@@ -15,10 +15,12 @@ from tailor.tools.evaluations.paired_comparison import (
     Comparison,
     Difference,
     Units,
+    by_unit,
     compare,
     compare_means,
     compare_shares,
     p_shown,
+    ratio_interval,
     without_intervals,
 )
 from tailor.tools.evaluations.refinement.baselines import bias_s
@@ -52,6 +54,7 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         "mean_greedy_s": times.mean_baseline_s,
         "mean_refined_s": times.mean_s,
         **times.verdict,
+        **_of_total(both, units),
         "failed": len(pairs) - len(kept),
         **_shares("failures_pct", pairs.values(), every, lambda outcome: not outcome.achieved),
         **_shares("contacts_pct", pairs.values(), every, lambda outcome: outcome.costs.contacts > 0),
@@ -70,6 +73,19 @@ def _times(pairs: Sequence[Pair], units: Units | None) -> Comparison:
         unknown = math.nan
         return Comparison(len(pairs), count, unknown, unknown, unknown, (unknown, unknown), unknown, unknown, unknown)
     return compare([greedy.duration_s for greedy, _ in pairs], [refined.duration_s for _, refined in pairs], units)
+
+
+def _of_total(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
+    """Seconds gained as a share of all seconds of the baseline, in percent; the interval is a bootstrap over units."""
+    greedy_s, gained_s = (
+        by_unit(np.array(seconds), units)
+        for seconds in ([a.duration_s for a, _ in pairs], [a.duration_s - b.duration_s for a, b in pairs])
+    )
+    known = len(greedy_s) > 1
+    return {
+        "total_pct": 100 * float(gained_s.sum() / greedy_s.sum()) if known else math.nan,
+        "total_ci95": ratio_interval(100 * gained_s, greedy_s) if known else (math.nan, math.nan),
+    }
 
 
 def is_better(row: Mapping[str, Any]) -> bool:

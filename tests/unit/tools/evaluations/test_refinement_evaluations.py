@@ -28,6 +28,7 @@ from tailor.tools.evaluations.refinement import (
     energy,
     figure1,
     figure11,
+    refinement,
     refinement_rows,
     replicas,
     table3,
@@ -39,6 +40,7 @@ from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired, run_one
 from tailor.tools.learning.recipe import read_recipe, recipe_path
 
+COSTS = [f"{cost}_pct_{who}" for cost in ("failures", "contacts") for who in ("greedy", "refined")]
 DONE = Outcome(
     seed=1,
     variant="h1",
@@ -289,6 +291,34 @@ def test_a_scenario_that_nearly_always_fails_has_a_row_with_its_failures(achieve
     assert not is_better(row)
     durations_s = [DONE.duration_s] * achieved
     assert draw_pairs(durations_s, durations_s, tmp_path / "pairs.png").exists()
+
+
+def test_the_gain_of_the_total_is_that_of_the_sums_with_an_interval_over_starts():
+    took = ((10.0, 9.0), (20.0, 10.0), (10.0, 11.0), (10.0, 10.0))
+    pairs = {("a", k): tuple(replace(DONE, duration_s=s) for s in pair) for k, pair in enumerate(took)}
+    row = columns(pairs)
+    assert row["total_pct"] == pytest.approx(20.0)
+    assert row["total_ci95"][0] < 20.0 < row["total_ci95"][1]
+    assert "total_ci95" not in columns({**pairs, ("b", 1): pairs["a", 1]}, "scenario")
+
+
+def test_a_set_of_models_states_its_first_start(monkeypatch, capsys):
+    asked = []
+
+    def rows_of(domain, scenarios, seeds, arguments):
+        asked.append(seeds.first)
+        made = {"scenario": "x", "horizon": 2, "n": 2, "improvement_pct": 1.0, "ci95": (0.5, 1.5), "slower_pct": 0.0}
+        return [made | dict.fromkeys(COSTS, 0.0)], {}
+
+    monkeypatch.setattr(refinement, "rows_of", rows_of)
+    monkeypatch.setattr(refinement, "replica", lambda *_: argparse.Namespace(zoo="other"))
+    monkeypatch.setattr(refinement, "seeds_of", lambda _, given: Seeds(9 if given.zoo else 1, {}))
+    parser = argparse.ArgumentParser()
+    refinement.configure(parser)
+    given = parser.parse_args(["--domain", "soccer", "--scenario", "approach", "--models", "1", "--json"])
+    assert refinement.run(given) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [row["first_seed"] for row in rows] == asked == [1, 9]
 
 
 @pytest.mark.parametrize("scenario", ["approach-dribble", "opponents"])
