@@ -33,7 +33,7 @@ ABLATIONS = (
 REMARKS = (
     "improvement: over greedy with the same models; more: than the default, paired by start, in points; contacts and "
     "failures: share of all runs; n: starts from which all three achieved the goal",
-    "trained anew: models of their own, with one on-policy round and without",
+    "trained anew: models of their own, with one on-policy round and without; both over greedy with the former",
 )
 
 
