@@ -88,7 +88,7 @@ def discs_of(context: ActionContext, belief: PlanarBelief) -> tuple[Disc, ...]:
 
 
 def with_detours(domain: Any) -> Any:
-    """A domain whose controllers drive around the objects of their actions' contexts, without assertion or models."""
+    """A domain whose controllers drive around the objects of their actions' contexts: no model predicts these then."""
     return replace(domain, actions={name: _detouring(domain, action) for name, action in domain.actions.items()})
 
 
