@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
-from tailor.tools.evaluations.models import floors, fresh, model_rows
+from tailor.tools.evaluations.models import floors, fresh, model_rows, table2
 from tailor.tools.evaluations.models.model_rows import duration_columns
 from tailor.tools.figures.learned_models import reports
 from tailor.tools.main import main
@@ -32,6 +32,21 @@ def test_models_are_judged_on_random_arguments_and_on_the_executives_choices(tmp
 def test_the_papers_tables_are_of_random_arguments_alone(name, capsys):
     assert main(["evaluate", name, "--on-policy", "waypoints"]) == 2
     assert "--on-policy" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("missed", "false_alarms", "failures", "reaches"),
+    [
+        (0.3, 0.8, 0.7, True),
+        (0.7, 0.0, 0.7, False),
+        (0.5, 0.9, 0.7, False),
+        (0.0, 0.0, 0.0, True),
+        (1.1, 1.0, 9.0, False),
+    ],
+)
+def test_a_model_that_foresees_no_failure_does_not_reach_table_2(missed, false_alarms, failures, reaches):
+    row = {"failure_accuracy_pct": 100 - missed - false_alarms, "missed_failures_pct": missed}
+    assert table2.reached({**row, "false_alarms_pct": false_alarms, "failures_pct": failures}) is reaches
 
 
 def test_an_unknown_scenario_is_a_usage_error(capsys):
