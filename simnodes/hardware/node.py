@@ -22,6 +22,7 @@ from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.watchdogs import FOREVER, RetryPolicy, SensorWatch, watched_sensors
 
 PERIOD_NS = 10_000_000
+LATER_NS = 100_000_000  # by which a read may begin later than the last measurement came, on a busy machine
 
 
 class HardwareNode:
@@ -140,7 +141,8 @@ class HardwareNode:
         if running and not self._opened:
             self._watch.restart(now_ns)
         self._opened = running
-        found = device.stalled(now_ns) or (self._watch.fault(now_ns) if running else "")
+        silent = self._watch.fault(now_ns) if running else ""
+        found = device.stalled(now_ns + LATER_NS if silent else now_ns) or silent  # a call is why it is silent
         if found:
             device.fail(found)
         if device.fault:

@@ -166,6 +166,16 @@ def test_a_silent_sensor_stops_the_robot(robot):
     stopped_for(driven, "odom: silent for 0.5 s")
 
 
+def test_a_read_that_stalls_is_named_rather_than_the_sensor_that_it_leaves_silent(robot, monkeypatch):
+    """Also where a busy machine lets it begin late, so that the sensor is silent for longer."""
+    driven = robot(Faulty(impatient={"read"}))
+    heard = driven.node._watch.heard
+    monkeypatch.setattr(driven.node._watch, "heard", lambda topic, at_ns: heard(topic, at_ns - 50_000_000))
+    driven.drive()
+    driven.hardware.stalls = {"read"}
+    stopped_for(driven, "read: stalled for 0.5 s")
+
+
 def test_a_robot_without_odometry_cannot_be_armed(robot):
     hardware = Faulty()
     hardware.silent = True
