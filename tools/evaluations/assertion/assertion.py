@@ -79,21 +79,22 @@ def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
     n = len(seeds)
     successes = {name: [seed for seed in seeds if succeeded(found[name][seed])] for name in found}
     needless = [seed for seed in successes[BEFORE] if after[seed].asserted]
+    needless_slower, to_baseline = slower_pct(before, after, needless), slower_pct(baseline, after, seeds)
     return {
         "n": n,
         "success_before_pct": 100 * len(successes[BEFORE]) / n,
         "success_after_pct": 100 * len(successes[AFTER]) / n,
         "ci95_after": share_interval(len(successes[AFTER]), n),
         "needless_pct": 100 * len(needless) / n,
-        "needless_slower_pct": slower_pct(before, after, needless)[0],
-        "ci95_needless_slower": slower_pct(before, after, needless)[1],
+        "needless_slower_pct": needless_slower[0],
+        "ci95_needless_slower": needless_slower[1],
         "baseline_needless_slower_pct": slower_pct(before, baseline, needless)[0],
         "baseline_success_pct": 100 * len(successes[BASELINE]) / n,
         "ci95_baseline": share_interval(len(successes[BASELINE]), n),
         "baseline_slower_pct": slower_pct(before, baseline, successes[BEFORE])[0],
         "after_slower_pct": slower_pct(before, after, successes[BEFORE])[0],
-        "after_to_baseline_pct": slower_pct(baseline, after, seeds)[0],
-        "ci95_after_to_baseline": slower_pct(baseline, after, seeds)[1],
+        "after_to_baseline_pct": to_baseline[0],
+        "ci95_after_to_baseline": to_baseline[1],
         "asserted_pct": 100 * sum(after[seed].asserted for seed in seeds) / n,
         "lost_pct": 100 * len(set(successes[BEFORE]) - set(successes[AFTER])) / n,
         "contacts_after_pct": 100 * sum(after[seed].costs.contacts > 0 for seed in seeds) / n,
