@@ -68,6 +68,18 @@ def seeded_scenario(name: str, scenario: str, seed: int) -> tuple[Scenario, dict
     return load_scenario(name, scenario, np.random.default_rng([seed, SCENARIO_STREAM]))
 
 
+def declaration(spec: DomainSpec, scenario: str) -> Mapping[str, Any]:
+    """The table of a scenario file.
+
+    Raises:
+      ValueError: The file is no TOML in UTF-8.
+    """
+    try:
+        return toml_table(_folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8"))
+    except UnicodeDecodeError:
+        raise ValueError("not UTF-8") from None
+
+
 def _folder(spec: DomainSpec) -> Traversable:
     """The folder of a domain's scenario files."""
     folder = file(spec, "scenarios")
@@ -81,9 +93,8 @@ def _scenario_files(spec: DomainSpec) -> list[str]:
 
 
 def _declaration(spec: DomainSpec, scenario: str) -> Mapping[str, Any]:
-    """The table of a scenario file; raises UsageError if it is no TOML."""
-    text = _folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8")
+    """`declaration`, whose error names the file and is for users."""
     try:
-        return toml_table(text)
+        return declaration(spec, scenario)
     except ValueError as error:
         raise UsageError(f"domain {spec.name}: {spec.scenarios}/{scenario}.toml: {error}") from None

@@ -9,7 +9,7 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file
 from tailor.schemas.packages.spec import DomainSpec
-from tailor.schemas.parsed_files import shown, toml_table
+from tailor.schemas.parsed_files import shown
 
 
 def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
@@ -17,7 +17,7 @@ def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
     folder = None if spec.generator else file(spec, "scenarios")
     if folder is not None and folder.is_dir():
         names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
-        found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in _faults_of_file(folder, name)]
+        found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in _faults_of_file(spec, folder, name)]
         if found:
             yield from found
             return
@@ -30,13 +30,10 @@ def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
         yield f"{spec.generator or spec.scenarios}: there is no scenario"
 
 
-def _faults_of_file(folder: Traversable, name: str) -> Iterator[str]:
+def _faults_of_file(spec: DomainSpec, folder: Traversable, name: str) -> Iterator[str]:
     """Faults of a scenario file that show without drawing it; `draw` reads the other entries."""
     try:
-        declared = toml_table(folder.joinpath(name).read_text(encoding="utf-8"))
-    except UnicodeDecodeError:
-        yield "not UTF-8"
-        return
+        declared = domains.declaration(spec, name.removesuffix(".toml"))
     except ValueError as error:
         yield str(error)
         return

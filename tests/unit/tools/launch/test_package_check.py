@@ -130,8 +130,9 @@ def test_all_faults_stand_in_one_line(monkeypatch):
     assert "\n" not in text
 
 
-def test_without_that_check_a_scenario_file_that_is_no_toml_is_named_too(scenarios):
+@pytest.mark.parametrize(("text", "fault"), [(b"= 3", "not TOML: "), (b"\xff", "not UTF-8")])
+def test_without_that_check_a_scenario_file_that_is_no_toml_is_named_too(scenarios, text, fault):
     folder, _ = scenarios
-    (folder / "bad.toml").write_bytes(b"= 3")
-    with pytest.raises(UsageError, match=r"domain soccer: .*/bad\.toml: not TOML: "):
+    (folder / "bad.toml").write_bytes(text)
+    with pytest.raises(UsageError, match=rf"domain soccer: .*/bad\.toml: {fault}"):
         domains.scenarios("soccer")
