@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
 from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
-from tailor.models.episodes.sources import PROBE, end_of, probe_of, source_files, source_of
+from tailor.models.episodes.sources import CALIBRATES, PROBE, end_of, probe_of, source_files, source_of
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ class Episode:
       finished: Whether the controller finished; False if the time limit was exceeded.
       work_j: Work of the drives from each tick to the next in joules, shape (t,); None if not recorded.
       on_policy: Whether an optimiser chose the arguments.
+      calibrates: Whether it only corrects the intervals of the models that chose it.
       in_context: Whether it was decided beside objects of its `ActionContext`, of which the arguments know nothing.
     """
 
@@ -60,6 +61,7 @@ class Episode:
     work_j: Array | None = None
     on_policy: bool = False
     in_context: bool = False
+    calibrates: bool = False
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
@@ -151,7 +153,7 @@ def read_data_set(folder: Path) -> DataSet:
     digest = hashlib.sha256()
     for path in sorted(folder.glob("part-*.parquet")):
         digest.update(path.read_bytes())
-        episodes.extend(_episodes(read_part(path, names), names, bool(manifest.get("on_policy"))))
+        episodes.extend(_episodes(read_part(path, names), manifest))
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
         repeated = next(number for number, count in Counter(numbers).items() if count > 1)
@@ -182,6 +184,7 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     ends = [end_of(episode.duration_s, episode.ticks) for episode in first.episodes if episode.number < PROBE]
     about = {
         "on_policy": sum(source["on_policy"] for source in sources),
+        CALIBRATES: sum(source["episodes"] for source in sources if source.get(CALIBRATES)),
         "sources": sources,
         "source_files": source_files([each.manifest for each in sets]),
         "probe": probe_of(first.manifest, ends),
@@ -197,7 +200,9 @@ def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
     return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256", "profile")]
 
 
-def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Episode]:
+def _episodes(table: pa.Table, manifest: Mapping[str, Any]) -> list[Episode]:
+    names = [argument["name"] for argument in manifest["arguments"]]
+    on_policy, calibrates = bool(manifest.get("on_policy")), bool(manifest.get(CALIBRATES))
     column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
     failure = table["failure"].to_pylist()
     ticks = np.column_stack([column[name] for name in names])
@@ -218,6 +223,7 @@ def _episodes(table: pa.Table, names: Sequence[str], on_policy: bool) -> list[Ep
             work[a:b] if np.isfinite(work[a:b]).all() else None,
             on_policy,
             bool(in_context[a]),
+            calibrates,
         )
         for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
     ]

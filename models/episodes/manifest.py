@@ -41,6 +41,7 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "context": (_is_context, "names of columns, and a failure"),
     "seed": (is_count, "a whole number"),
     "stream": (is_count, "a whole number"),
+    "calibrates": (lambda value: isinstance(value, bool), "true or false"),
     "on_policy": (_is_of_all, "true or false, or 0 for false"),
     "source_sha256": (lambda value: isinstance(value, str), "text"),
     "source_files": (lambda value: isinstance(value, dict), "an object"),

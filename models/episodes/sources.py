@@ -13,6 +13,7 @@ Manifest = Mapping[str, Any]
 # entries of a manifest that determine the episodes, with "source": random, on-policy, active, recordings
 DRAW = ("source", "seed", "stream", "scenarios", "situations", "recordings", "models_sha256", "profile")
 PROBE = 6  # first episodes of a data set that a card repeats, to be run again where the source has changed
+CALIBRATES = "calibrates"  # entry of a manifest: its episodes correct intervals, and nothing is learned from them
 SHORT = 12  # digits of a hash of a file in a card
 
 
@@ -29,6 +30,7 @@ def source_of(manifest: Manifest, count: int, sha256: str) -> dict[str, Any]:
         **{key: manifest[key] for key in DRAW if key in manifest},
         "episodes": count,
         "on_policy": count if manifest.get("on_policy") else 0,
+        **({CALIBRATES: True} if manifest.get(CALIBRATES) else {}),
         "sha256": sha256,
         "source_sha256": manifest.get("source_sha256"),
     }

@@ -17,6 +17,7 @@ from tailor.models.cards.card import FORMAT, SUCCESS_KINDS, Card, identity
 from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
+from tailor.models.episodes.sources import CALIBRATES
 from tailor.models.export.onnx_export import export_duration, export_success
 from tailor.models.export.zoo_writer import write_model
 from tailor.models.features.features import FeatureSpace
@@ -108,6 +109,7 @@ def _episodes(data: DataSet) -> dict[str, Any]:
         "count": len(data.episodes),
         "finished": sum(episode.finished for episode in data.episodes),
         "on_policy": data.manifest.get("on_policy", 0),
+        **({CALIBRATES: data.manifest[CALIBRATES]} if data.manifest.get(CALIBRATES) else {}),
         "sha256": data.sha256,
         **{key: data.manifest[key] for key in ("sources", "source_files", "probe") if data.manifest.get(key)},
     }

@@ -10,7 +10,7 @@ from sklearn.base import clone
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import episode_indices
-from tailor.models.regression.intervals import fit_intervals
+from tailor.models.regression.intervals import Rows, fit_intervals
 from tailor.models.regression.out_of_fold import out_of_fold
 from tailor.models.trees.regression_model import RegressionModel, Values
 
@@ -31,12 +31,13 @@ class CalibratedRegressor(RegressionModel):
         self.inner = inner
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, groups: Any = None, kinds: Any = None) -> Self:
+    def fit(self, X: Any, y: Any, groups: Any = None, kinds: Any = None, choices: Any = None) -> Self:
         """Fit to features (n, f) and seconds (n,); see `RegressionModel.fit`.
 
         The intervals are those of the first row of each episode: predictions are made before an action starts.
         `kinds`, shape (n,), is the kind of each row's episode, as `fit_intervals` has them, or `NOT_JUDGED` if the
-        intervals are not for actions as this one; None: all are of one kind.
+        intervals are not for actions as this one; None: all are of one kind. `choices`, features (c, f) and seconds
+        (c,), are episodes that this very model chose: it is not fitted to them, and they correct its intervals.
 
         Raises:
           ValueError: The rows are not finite numbers.
@@ -49,9 +50,16 @@ class CalibratedRegressor(RegressionModel):
         _, first = np.unique(episodes, return_index=True)
         kinds = np.zeros(len(y), np.int64) if kinds is None else np.asarray(kinds)
         first = first[kinds[first] != NOT_JUDGED]
-        errors, seed = (y - mean)[first], self.random_state
-        self.intervals_ = fit_intervals(X[first], std[first], errors, episodes[first], seed, kinds[first])
+        unseen_rows = Rows(X[first], std[first], (y - mean)[first])
+        chosen = None if choices is None else self._errors_at(*choices)
+        self.intervals_ = fit_intervals(unseen_rows, episodes[first], self.random_state, kinds[first], chosen)
         return self
+
+    def _errors_at(self, X: Any, y: Any) -> Rows:
+        """Errors of the fitted model at features (c, f) with seconds (c,), of which it has seen none."""
+        X = validate_data(self, X, dtype=np.float64, reset=False)
+        mean, std = self.predict_with_std(X)
+        return Rows(X, np.asarray(std, np.float64), np.asarray(y - mean, np.float64))
 
     def predict_with_std(self, X: Any) -> tuple[Values, Values]:
         """Mean and standard deviation of the inner model, shapes (n,)."""

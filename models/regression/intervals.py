@@ -1,7 +1,8 @@
 """Prediction intervals: a tree of conformal quantiles of the errors that a model makes on unseen episodes.
 
 The leaves are groups of similar actions, and each has quantiles of its own, so that the intervals hold where a model
-is sure as well as where it is not (Mondrian conformal prediction, Vovk 2005). Cross-validation corrects them once more.
+is sure as well as where it is not (Mondrian conformal prediction, Vovk 2005). Cross-validation corrects them once more,
+or the model's own choices do, of which it has learned nothing (split conformal prediction, Papadopoulos 2002).
 """
 
 from __future__ import annotations
@@ -19,13 +20,32 @@ from tailor.models.regression.out_of_fold import held_out_parts
 Floats = NDArray[np.float32]
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
+Grown = tuple[SplitTree, Array, Array]
 
 LEVEL = 0.9
+RANDOM = 0  # kind of episodes with random arguments
 MAX_LEAVES = 16
 MIN_LEAF = 60  # episodes in a leaf: fewer do not determine a twentieth of them
 THIRDS = 3  # of the widths, corrected separately
 MIN_PART = 100  # episodes in a third: nine tenths of fewer are known to worse than three points
+MIN_CHOICES = 100  # episodes that the model itself chose: fewer do not correct it
+MIN_CHOSEN_PART = 200  # of those in a third: a factor for each hundred is wider, and holds no more evenly
 LEAST = 1e-3  # s or J, half of the narrowest interval
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Errors of a model on episodes that it has not seen, a row each.
+
+    Attributes:
+      features: Shape (n, f).
+      std: Predicted standard deviations, shape (n,).
+      errors: Observed minus predicted values, shape (n,).
+    """
+
+    features: Array
+    std: Array
+    errors: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,27 +73,36 @@ def with_std(features: NDArray[np.floating], std: NDArray[np.floating]) -> Float
     return np.column_stack([features, std]).astype(np.float32)
 
 
-def fit_intervals(features: Array, std: Array, errors: Array, groups: Numbers, seed: int, kinds: Numbers) -> Intervals:
+def fit_intervals(unseen: Rows, groups: Numbers, seed: int, kinds: Numbers, choices: Rows | None = None) -> Intervals:
     """Fit intervals that hold LEVEL of the errors of each kind of episodes, in every third of their widths.
 
     Args:
-      features: One row per episode, shape (n, f).
-      std: Predicted standard deviations of unseen episodes, shape (n,).
-      errors: Observed minus predicted values of unseen episodes, shape (n,).
+      unseen: Episodes, each as models predict it that were fitted without it.
       groups: Episode of each row, shape (n,).
       seed: Seed of the folds.
-      kinds: Kind of each row, shape (n,), as random or chosen by the optimiser.
+      kinds: Kind of each row, shape (n,): `RANDOM`, or another number if an optimiser chose it.
+      choices: Episodes that the finished model chose, at least MIN_CHOICES. Refinement prefers where a model's spread
+        is too small, and choices of other models do not show where this is so. They take the place of those.
     """
-    rows = with_std(features, std)
+    rows, errors = with_std(unseen.features, unseen.std), unseen.errors
     width, excess = np.empty(len(errors)), np.empty(len(errors))
     for apart in held_out_parts(groups, seed):
-        splits, lower, upper = _grown(rows[~apart], errors[~apart])
-        leaf = splits.leaf_of(rows[apart])
-        width[apart] = upper[leaf] - lower[leaf]
-        excess[apart] = np.where(errors[apart] < 0, errors[apart] / lower[leaf], errors[apart] / upper[leaf])
-    splits, lower, upper = _grown(rows, errors)
-    factor = _factors(width, excess, kinds, upper - lower)
+        width[apart], excess[apart] = _judged(_grown(rows[~apart], errors[~apart]), rows[apart], errors[apart])
+    grown = splits, lower, upper = _grown(rows, errors)
+    corrections = _corrections(width, excess, kinds, upper - lower, choices is not None)
+    if choices is not None:
+        judged = _judged(grown, with_std(choices.features, choices.std), choices.errors)
+        corrections.append(_by_parts(*judged, upper - lower, MIN_CHOSEN_PART))
+    needed = np.max(corrections, axis=0)
+    factor = np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
     return Intervals(splits, (factor * lower).astype(np.float32), (factor * upper).astype(np.float32))
+
+
+def _judged(grown: Grown, rows: Floats, errors: Array) -> tuple[Array, Array]:
+    """Widths of the intervals around predictions, and the errors over the end on their side, shapes (n,)."""
+    splits, lower, upper = grown
+    leaf = splits.leaf_of(rows)
+    return upper[leaf] - lower[leaf], np.where(errors < 0, errors / lower[leaf], errors / upper[leaf])
 
 
 def conformal_quantile(values: Array, level: float) -> float:
@@ -82,7 +111,7 @@ def conformal_quantile(values: Array, level: float) -> float:
     return float(np.sort(values)[rank - 1])
 
 
-def _grown(rows: Floats, errors: Array) -> tuple[SplitTree, Array, Array]:
+def _grown(rows: Floats, errors: Array) -> Grown:
     """A tree by the size of the errors, and both quantiles in each leaf."""
     tree = DecisionTreeRegressor(max_leaf_nodes=MAX_LEAVES, min_samples_leaf=min(MIN_LEAF, len(errors)), random_state=0)
     splits = splits_of(tree.fit(rows, np.abs(errors)))
@@ -93,25 +122,26 @@ def _grown(rows: Floats, errors: Array) -> tuple[SplitTree, Array, Array]:
     return splits, lower, upper
 
 
-def _factors(width: Array, excess: Array, kinds: Numbers, leaf_width: Array) -> Array:
-    """Correction of each leaf, (l,), so that unseen errors are held in each third of the widths.
+def _corrections(width: Array, excess: Array, kinds: Numbers, leaf_width: Array, only_random: bool) -> list[Array]:
+    """Corrections of each leaf, (l,), so that unseen errors are held in each third of the widths.
 
-    Where kinds of episodes differ more than the features tell, the correction is that of the kind that needs most: the
+    Where kinds of episodes differ more than the features tell, that of the kind that needs most counts: the
     optimiser's choices are a quarter of the episodes, and what refinement uses. Each kind has thirds of its own, as its
     widths are others: the widest choices would else be judged among random episodes that are as wide.
     """
-    of_kinds = [kinds == kind for kind in np.unique(kinds)]
-    groups = [np.ones(len(kinds), bool), *(group for group in of_kinds if group.sum() >= MIN_LEAF)]
-    needed = np.max([_by_parts(width[group], excess[group], leaf_width) for group in groups], axis=0)
-    return np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
+    of_kinds = {kind: kinds == kind for kind in np.unique(kinds).tolist() if not only_random or kind == RANDOM}
+    groups = [group for group in of_kinds.values() if group.sum() >= MIN_LEAF]
+    if not only_random:
+        groups.insert(0, np.ones(len(kinds), bool))
+    return [_by_parts(width[group], excess[group], leaf_width, MIN_PART) for group in groups]
 
 
-def _by_parts(width: Array, excess: Array, leaf_width: Array) -> Array:
+def _by_parts(width: Array, excess: Array, leaf_width: Array, least: int) -> Array:
     """Correction of each leaf, (l,), by the episodes whose width is in the same third; 0 where all are narrower.
 
-    Few episodes are in halves, or not parted.
+    With fewer than `least` in a third they are in halves, or not parted.
     """
-    parts = max(1, min(THIRDS, len(width) // MIN_PART))
+    parts = max(1, min(THIRDS, len(width) // least))
     edges = np.quantile(width, np.arange(1, parts) / parts)
     part = np.searchsorted(edges, width, "right")
     pooled = conformal_quantile(excess, LEVEL)

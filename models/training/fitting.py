@@ -14,9 +14,22 @@ from tailor.models.features.features import FeatureSpace
 Array = NDArray[np.float64]
 
 
-def fitted(learner: Any, rows: Examples, space: FeatureSpace, kinds: Mapping[int, int] | None = None) -> Any:
-    """The learner itself, fitted; if it has intervals, `kinds` are those of its episodes, by their numbers."""
-    known = {} if kinds is None else {"kinds": np.array([kinds[number] for number in rows.groups.tolist()])}
+def fitted(
+    learner: Any,
+    rows: Examples,
+    space: FeatureSpace,
+    kinds: Mapping[int, int] | None = None,
+    choices: Examples | None = None,
+) -> Any:
+    """The learner itself, fitted.
+
+    If it has intervals, `kinds` are those of its episodes, by their numbers, and `choices` correct the intervals.
+    """
+    known: dict[str, Any] = {}
+    if kinds is not None:
+        known["kinds"] = np.array([kinds[number] for number in rows.groups.tolist()])
+    if choices is not None:
+        known["choices"] = space(choices.arguments), choices.targets
     return learner.fit(space(rows.arguments), rows.targets, groups=rows.groups, **known)
 
 

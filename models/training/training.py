@@ -19,6 +19,7 @@ from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
+from tailor.models.regression.intervals import MIN_CHOICES
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
 from tailor.models.training.first_ticks import best_n_i
@@ -80,7 +81,7 @@ def train_regression(
 
     Args:
       target: `DURATION` or `ENERGY`.
-      episodes: Episodes of one action.
+      episodes: Episodes of one action; those that calibrate only correct the intervals.
       space: Feature space of the action's arguments.
       learner: Key of `learners.DURATION_LEARNERS`.
       seed: Random seed of splits and learner.
@@ -89,8 +90,10 @@ def train_regression(
     Raises:
       UsageError: Fewer than MIN_EPISODES finished episodes hold the target, or the learner is unknown.
     """
-    finished = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
+    usable = [episode for episode in episodes if episode.finished and target.is_recorded(episode)]
+    finished = [episode for episode in usable if not episode.calibrates]
     check_count(finished, "finished")
+    choices = _choices(target, [episode for episode in usable if episode.calibrates and judges(episode)])
     rng = np.random.default_rng(seed)
     judging = [episode for episode in finished if judges(episode)]
     kinds = {episode.number: int(episode.on_policy) if judges(episode) else NOT_JUDGED for episode in finished}
@@ -100,7 +103,7 @@ def train_regression(
     n_i = best_n_i(target, finished, kept, space, singles, rng)
     rows = target.examples(finished, n_i)
     first = target.examples(judging, 1).of(apart)
-    held_out = fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds)
+    held_out = fitted(learners.calibrated(target.kind, learner, seed), rows.of(kept), space, kinds, choices)
     chosen = held_out.inner_.frozen() if isinstance(held_out.inner_, BlendedRegressor) else held_out.inner
     test = {
         "n": len(first.targets),
@@ -110,7 +113,12 @@ def train_regression(
         "learning_curve": _curve(chosen, held_out, rows, first, kept, space, rng),
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
-    return Trained(fitted(CalibratedRegressor(chosen, seed), rows, space, kinds), n_i, test)
+    return Trained(fitted(CalibratedRegressor(chosen, seed), rows, space, kinds, choices), n_i, test)
+
+
+def _choices(target: RegressionTarget, episodes: Sequence[Episode]) -> Examples | None:
+    """The first rows of the episodes that correct the intervals; None if they are too few for that."""
+    return target.examples(episodes, 1) if len(episodes) >= MIN_CHOICES else None
 
 
 def _tested(

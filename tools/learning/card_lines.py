@@ -10,7 +10,7 @@ from tailor.models.cards.card import Card
 TITLE = ("robot", "action", "kind")
 FIGURES = ("test", "episodes", "learner")
 LAST = ("golden", "command", "versions", "sha256", "format", "provenance")
-COUNTS = ("count", "finished", "on_policy")  # of the episodes; what else is known of them is their provenance
+COUNTS = ("count", "finished", "on_policy", "calibrates")  # of the episodes; all else is their provenance
 MAX_LEVELS = 10  # what is nested deeper is left out
 
 

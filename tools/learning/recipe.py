@@ -40,6 +40,24 @@ class Round:
 
 
 @dataclass(frozen=True, slots=True)
+class Calibration:
+    """Runs with the models of all other episodes, to correct their intervals; nothing else is learned from them.
+
+    Attributes:
+      scenarios: Scenarios that are run.
+      episodes: Runs of each scenario.
+    """
+
+    scenarios: tuple[str, ...]
+    episodes: int
+
+    @property
+    def situations(self) -> int:
+        """Number of runs."""
+        return self.episodes * len(self.scenarios)
+
+
+@dataclass(frozen=True, slots=True)
 class RandomEpisodes:
     """Number of random episodes of an action that needs another one than most."""
 
@@ -72,6 +90,7 @@ class Recipe:
         there while it runs.
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
+      calibration: Runs after all rounds.
       training: How each model is trained.
       profile: Of the body; empty: the usual one.
     """
@@ -82,12 +101,18 @@ class Recipe:
     seed: int = 7
     random: tuple[RandomEpisodes, ...] = ()
     rounds: tuple[Round, ...] = ()
+    calibration: tuple[Calibration, ...] = ()
     training: Training = field(default_factory=Training)
     profile: str = ""
 
     def episodes_of(self, action: str) -> int:
         """Number of random episodes of an action."""
         return next((each.episodes for each in self.random if each.action == action), self.episodes)
+
+    @property
+    def chosen(self) -> list[tuple[str, Round | Calibration]]:
+        """All that models choose, each with its name in the file."""
+        return [*(("rounds", each) for each in self.rounds), *(("calibration", each) for each in self.calibration)]
 
 
 def recipe_path(robot: str) -> Path:
@@ -126,12 +151,12 @@ def _faults(recipe: Recipe) -> Iterator[str]:
     if recipe.objects > 0 and not recipe.beside:
         yield f"objects is {recipe.objects}, expected none without `beside`, the number of runs beside them"
     yield from _repeated("random", [each.action for each in recipe.random])
-    for each in recipe.rounds:
-        if not each.scenarios:
-            yield "rounds.scenarios is empty, expected at least one"
-        yield from _repeated("rounds.scenarios", each.scenarios)
-        if each.situations > MAX_SITUATIONS:
-            yield f"rounds: {too_many(each.situations)}"
+    for name, chosen in recipe.chosen:
+        if not chosen.scenarios:
+            yield f"{name}.scenarios is empty, expected at least one"
+        yield from _repeated(f"{name}.scenarios", chosen.scenarios)
+        if chosen.situations > MAX_SITUATIONS:
+            yield f"{name}: {too_many(chosen.situations)}"
 
 
 def _without_effect(table: dict[str, Any]) -> Iterator[str]:
@@ -144,8 +169,8 @@ def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:
     """Key of each number in the file, its value, and the least legal one."""
     yield from (("episodes", recipe.episodes, 1), ("beside", recipe.beside, 0), ("objects", recipe.objects, 0))
     yield from (("random.episodes", each.episodes, 1) for each in recipe.random)
-    for each in recipe.rounds:
-        yield from (("rounds.episodes", each.episodes, 1), ("rounds.pool", each.pool, 1))
+    yield from ((f"{name}.episodes", chosen.episodes, 1) for name, chosen in recipe.chosen)
+    yield from (("rounds.pool", each.pool, 1) for each in recipe.rounds)
 
 
 def _repeated(name: str, words: Sequence[str]) -> Iterator[str]:

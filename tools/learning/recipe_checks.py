@@ -35,12 +35,12 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     for each in recipe.random:
         if each.action not in actions:
             raise UsageError(f"random episodes of '{each.action}', expected one of: {', '.join(actions)}")
-    for scenario in dict.fromkeys(name for each in recipe.rounds for name in each.scenarios):
+    for scenario in dict.fromkeys(name for _, each in recipe.chosen for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)
     if recipe.beside and not needed:
         raise UsageError(f"beside is {recipe.beside}, expected 0: no action has a model of success beside an object")
     if recipe.beside:
         check_sampler(domains.load(domain), recipe.objects)
-    if needed and recipe.rounds and not recipe.beside:
+    if needed and recipe.chosen and not recipe.beside:
         raise UsageError(f"beside is 0, expected runs of {', '.join(needed)} beside objects, as rounds need")

@@ -158,7 +158,7 @@ def _drawn(manifest: Mapping[str, Any]) -> str:
     if situations:
         return f"--active {scenarios} --pool {situations // max(1, manifest.get('episodes') or 1)}"
     if scenarios:
-        return f"--on-policy {scenarios}"
+        return f"--on-policy {scenarios}" + (" --calibrates" if manifest.get("calibrates") else "")
     action: str = manifest["action"]
     if manifest.get("objects"):
         return f"{action} --beside-objects {manifest['objects']}"

@@ -85,16 +85,24 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     """
     from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
+    from tailor.models.episodes.sources import CALIBRATES
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
-    data = merge([without_context(each) for each in alone or sets])
+    by_itself = [without_context(each) for each in alone or sets]
+    learned = [each for each in by_itself if not each.manifest.get(CALIBRATES)]
+    if not learned:
+        raise UsageError(f"{folders[0]}: all episodes calibrate, expected some to learn from")
+    data, of_success = merge(by_itself), merge(learned)
     if data.manifest["robot"] != request.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
     spaces = spaces_by_kind(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
+    own = [
+        (of_success if kind == "success" else data, kind, learner, train, spaces[kind])
+        for kind, learner, train in own_jobs(of_success, request)
+    ]
     every = (*own, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:

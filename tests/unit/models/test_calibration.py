@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tailor.models.regression.intervals import fit_intervals
+from tailor.models.regression.intervals import MIN_CHOICES, Rows, fit_intervals
 from tailor.models.training.calibration import MIN_EPISODES, coverage, judged
 
 
@@ -23,7 +23,7 @@ def one_kind(count):
 @pytest.fixture(scope="module")
 def intervals():
     features, std, errors = heteroscedastic(3000, 1)
-    return fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=one_kind(3000))
+    return fit_intervals(Rows(features, std, errors), np.arange(3000), seed=1, kinds=one_kind(3000))
 
 
 def test_every_third_of_the_widths_holds_nine_tenths_of_fresh_errors(intervals) -> None:
@@ -43,7 +43,7 @@ def test_choices_that_err_more_than_the_features_tell_are_held_as_well() -> None
 
     features, std, errors, chosen = some(3000, 1)
     fitted = {
-        alike: fit_intervals(features, std, errors, np.arange(3000), seed=1, kinds=kinds)
+        alike: fit_intervals(Rows(features, std, errors), np.arange(3000), seed=1, kinds=kinds)
         for alike, kinds in ((True, one_kind(3000)), (False, chosen.astype(np.int64)))
     }
     features, std, errors, chosen = some(30_000, 2)
@@ -64,10 +64,48 @@ def test_the_widest_choices_are_held_though_random_episodes_are_wider() -> None:
         return (each[inside] for each in (features, std, np.where(errs_more, 2.0, 1) * errors, chosen))
 
     features, std, errors, chosen = some(6000, 1)
-    intervals = fit_intervals(features, std, errors, np.arange(len(errors)), seed=1, kinds=chosen.astype(np.int64))
+    intervals = fit_intervals(
+        Rows(features, std, errors), np.arange(len(errors)), seed=1, kinds=chosen.astype(np.int64)
+    )
     features, std, errors, chosen = some(60_000, 2)
     lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
     assert min(coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]) > 89
+
+
+@pytest.mark.parametrize(("chosen", "held"), [(MIN_CHOICES, 5), (3000, 2)])
+def test_choices_of_the_finished_model_correct_its_intervals(chosen: int, held: float) -> None:
+    """Where the model that chose them errs half as much again, and those of former models show nothing of it."""
+    features, std, errors = heteroscedastic(3000, 1)
+    former = np.arange(3000) % 4 == 0
+    own = Rows(*heteroscedastic(chosen, 4))
+    own = Rows(own.features, own.std, 1.5 * own.errors)
+    kinds = former.astype(np.int64)
+    without, corrected = (
+        fit_intervals(Rows(features, std, errors), np.arange(3000), seed=1, kinds=kinds, choices=choices)
+        for choices in (None, own)
+    )
+    features, std, errors = heteroscedastic(30_000, 2)
+    covers = []
+    for intervals in (without, corrected):
+        lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
+        covers.append(coverage(1.5 * errors, lower, upper)["covers_pct"])
+    assert covers == [pytest.approx(71, abs=2), pytest.approx(90, abs=held)]
+
+
+def test_choices_take_the_place_of_those_of_former_models_and_random_episodes_stay_held() -> None:
+    features, std, errors = heteroscedastic(6000, 1)
+    former = np.arange(6000) % 4 == 0
+    errors[former] *= 3
+    own = Rows(*heteroscedastic(600, 4))
+    held = []
+    for choices in (None, own, Rows(own.features, own.std, 0.2 * own.errors)):
+        rows = Rows(features, std, errors)
+        intervals = fit_intervals(rows, np.arange(6000), seed=1, kinds=former.astype(np.int64), choices=choices)
+        fresh, spread, seconds = heteroscedastic(30_000, 2)
+        lower, upper = intervals.around(fresh.astype(np.float32), np.zeros(len(seconds)), spread)
+        held.append(coverage(seconds, lower, upper)["covers_pct"])
+    assert held[0] > 95
+    assert held[1:] == [pytest.approx(90, abs=2.5)] * 2
 
 
 def test_skewed_errors_have_skewed_intervals(intervals) -> None:
@@ -77,7 +115,7 @@ def test_skewed_errors_have_skewed_intervals(intervals) -> None:
 
 def test_few_episodes_give_one_interval_that_holds_them_all() -> None:
     features, std, errors = heteroscedastic(20, 3)
-    few = fit_intervals(features, std, errors, np.arange(20), seed=1, kinds=one_kind(20))
+    few = fit_intervals(Rows(features, std, errors), np.arange(20), seed=1, kinds=one_kind(20))
     lower, upper = few.around(features.astype(np.float32), np.zeros(20), std)
     assert ((errors >= lower) & (errors <= upper)).mean() >= 0.9
 

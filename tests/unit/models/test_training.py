@@ -109,6 +109,21 @@ def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_i
     assert np.allclose(model.interval(np.stack([e.ticks[0] for e in episodes]))[2], upper, atol=1e-4)
 
 
+def test_episodes_that_calibrate_correct_the_intervals_and_nothing_else() -> None:
+    episodes = data_set(240).episodes
+    late = [replace(e, number=1000 + e.number, duration_s=e.duration_s + 2, calibrates=True) for e in episodes[:150]]
+    without = train_duration(episodes, projective, "linear", 3)
+    rows = projective(np.stack([e.ticks[0] for e in episodes]))
+    mean, lower, upper = without.learner.predict_interval(rows)
+    for more, corrected in ((late, True), (late[:99], False), ([replace(late[0], finished=False)] * 150, False)):
+        trained = train_duration([*episodes, *more], projective, "linear", 3)
+        same, low, high = trained.learner.predict_interval(rows)
+        assert np.array_equal(mean, same)
+        assert (trained.n_i, trained.test["n"]) == (without.n_i, without.test["n"])
+        assert np.array_equal(lower, low) == np.array_equal(upper, high) == (not corrected)
+        assert not corrected or (high - mean > 1.9).mean() > 0.9
+
+
 def with_failures(data: DataSet, failing: int) -> list[Episode]:
     return [replace(e, success=e.number >= failing, failure="") for e in data.episodes[:50]]
 

@@ -30,6 +30,7 @@ examples:
   tailor gather agilo goToPose --beside-object --episodes 3000 --out data/agilo-beside
   tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
+  tailor gather agilo --on-policy approach-dribble --episodes 300 --seed 9 --calibrates --out data/agilo-intervals
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo --episodes 30000 --on tcp://lab-7:8786 --out data/agilo   (on a cluster: docs/cluster.md)
   tailor gather agilo --profile degraded --out data/agilo-degraded   (a worse camera, other tyres)
@@ -83,6 +84,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=at_least(1, "--pool"),
         help=f"--active: situations per episode (default: {POOL})",
     )
+    parser.add_argument(
+        "--calibrates",
+        action="store_true",
+        help="--on-policy: learn nothing from these runs; they correct the intervals of models of all other episodes",
+    )
     parser.add_argument("--profile", help="profile of the body, e.g. degraded (default: the one that ships)")
     parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
@@ -112,6 +118,8 @@ def _refuse_ignored(arguments: argparse.Namespace) -> None:
         raise UsageError("--pool counts the situations of --active, expected none without it")
     if arguments.zoo and not (arguments.active or arguments.on_policy):
         raise UsageError("--zoo names the models that choose, expected none without --on-policy or --active")
+    if arguments.calibrates and not arguments.on_policy:
+        raise UsageError("--calibrates is for choices of finished models, expected none without --on-policy")
     for name, default in SIMULATED.items() if arguments.recordings else ():
         if getattr(arguments, name) != default:
             raise UsageError(f"--{name} is for simulated runs, expected none with --from")
@@ -174,7 +182,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
 
         active = Active(domain, scenarios, arguments.episodes, arguments.pool or POOL, *where)
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
-    policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where)
+    policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where, arguments.calibrates)
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
     return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
 

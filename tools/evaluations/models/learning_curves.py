@@ -63,7 +63,16 @@ class Point:
         beside = min(shipped.beside, BESIDE)
         count = self.episodes - half
         training = replace(shipped.training, seed=seed)
-        return replace(shipped, episodes=count, random=(), beside=beside, seed=seed, rounds=rounds, training=training)
+        return replace(
+            shipped,
+            episodes=count,
+            random=(),
+            beside=beside,
+            seed=seed,
+            rounds=rounds,
+            calibration=(),
+            training=training,
+        )
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

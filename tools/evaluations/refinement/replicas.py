@@ -30,7 +30,7 @@ class Recipe:
       domain: Name of the domain.
       scenarios: Of the on-policy round.
       episodes: Random ones of each action; `None`: the recipe's.
-      runs: Of a single on-policy round, a scenario; 0: no round; `None`: the rounds of the recipe.
+      runs: Of a single on-policy round, a scenario; 0: no round; `None`: rounds and calibration of the recipe.
     """
 
     domain: str
@@ -75,7 +75,8 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     if recipe.episodes is not None:
         own = replace(own, episodes=recipe.episodes, random=())
     if recipe.runs is not None:
-        own = replace(own, rounds=(Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ())
+        rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
+        own = replace(own, rounds=rounds, calibration=())
     making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
     show(make(making), False, {}, f"model {number}: ")
     return making

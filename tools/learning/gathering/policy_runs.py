@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Settings, make_context
 from tailor.models.episodes.episodes import Episode
+from tailor.models.episodes.sources import CALIBRATES
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
 from tailor.tools.learning.gathering.run_data_sets import write
@@ -27,7 +29,10 @@ MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """Scenarios to run with the current models, and the folder of their data sets, one per action."""
+    """Scenarios to run with the current models, and the folder of their data sets, one per action.
+
+    With `calibrates` nothing is learned from the episodes: they correct the intervals of these very models.
+    """
 
     domain: str
     scenarios: tuple[str, ...]
@@ -36,6 +41,7 @@ class Policy:
     zoo: str
     folder: Path
     profile: str = ""  # of the body; empty: the one that ships
+    calibrates: bool = False
 
     @property
     def jobs(self) -> list[tuple[str, int]]:
@@ -49,7 +55,9 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
     """
-    prepare_chosen(policy, {"source": "lock-step, refined choices", "episodes": policy.runs}, policy.jobs, resume)
+    about: dict[str, Any] = {"source": "lock-step, refined choices", "episodes": policy.runs}
+    about |= {CALIBRATES: True} if policy.calibrates else {}
+    prepare_chosen(policy, about, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
     for number, cut in completed(_chunk, [(policy, first) for first in missing], jobs):
         first = missing[number]

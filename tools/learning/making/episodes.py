@@ -1,4 +1,4 @@
-"""Gathers the episodes of a recipe: random ones, then rounds that the models trained so far choose."""
+"""Gathers the episodes of a recipe: random ones, then rounds and calibration, which models choose."""
 
 from __future__ import annotations
 
@@ -41,6 +41,16 @@ def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterato
     policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where)
     running = policy_runs.run_policy(policy, making.jobs)
     yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
+
+
+def gather_calibration(making: Making, zoo: Path) -> Iterator[Step]:
+    """Gather the runs that correct the intervals of the models in a zoo; yields progress."""
+    recipe, before = making.recipe, len(making.recipe.rounds)
+    for number, (each, folder) in enumerate(zip(recipe.calibration, making.calibration, strict=True)):
+        where = (recipe.seed + before + number, str(zoo), folder, recipe.profile)
+        policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where, calibrates=True)
+        running = policy_runs.run_policy(policy, making.jobs)
+        yield from counted(f"calibration {number + 1}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
 
 
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:

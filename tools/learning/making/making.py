@@ -70,10 +70,15 @@ class Making:
         return self.rounds / "zoo"
 
     def chooser(self, number: int) -> Path:
-        """Folder of the models that choose the episodes of round `number`, from 0."""
+        """Folder of the models that choose the episodes of round `number`, from 0, and after all rounds calibrate."""
         return self.rounds / f"zoo-{number}"
 
     @property
     def data(self) -> list[Path]:
         """Folders with the data sets of the random episodes, and of each round."""
         return [self.random, *(self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds)))]
+
+    @property
+    def calibration(self) -> list[Path]:
+        """Folders with the data sets that correct intervals."""
+        return [self.rounds / f"calibration-{k + 1}" for k in range(len(self.recipe.calibration))]

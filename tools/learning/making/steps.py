@@ -1,4 +1,5 @@
-"""Makes the models of a robot from seeds: random episodes, then rounds that the models trained so far choose.
+"""Makes the models of a robot from seeds: random episodes, then rounds that the models trained so far choose,
+and at last runs by the models of all of them, which correct their intervals.
 
 Equal source, libraries, recipe and platform give equal models, bit for bit. Every step is resumed where it stopped.
 """
@@ -10,7 +11,7 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.tools.learning.gathering import data_set_spec, run_data_sets
-from tailor.tools.learning.making.episodes import gather_random, gather_round
+from tailor.tools.learning.making.episodes import gather_calibration, gather_random, gather_round
 from tailor.tools.learning.making.installing import check_complete
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.training import train_all, training_request
@@ -44,5 +45,10 @@ def make(making: Making) -> Iterator[Step]:
         zoo = making.chooser(number)
         yield from train_all(making, zoo, making.data[: number + 1], CHOOSING)
         yield from gather_round(making, number, each, zoo)
-    yield from train_all(making, making.zoo, making.data, making.kinds or making.recipe.training.kinds)
+    if making.recipe.calibration:
+        zoo = making.chooser(len(making.recipe.rounds))
+        yield from train_all(making, zoo, making.data, CHOOSING)
+        yield from gather_calibration(making, zoo)
+    data = [*making.data, *making.calibration]
+    yield from train_all(making, making.zoo, data, making.kinds or making.recipe.training.kinds)
     check_complete(making)

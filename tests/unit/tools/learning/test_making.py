@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tailor.models.cards.card import card_path, read_card
+from tailor.models.episodes.manifest import read_manifest
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
@@ -17,7 +18,7 @@ from tailor.tools.learning.making import making as making_module
 from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.making.steps import check, make
-from tailor.tools.learning.recipe import RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
+from tailor.tools.learning.recipe import Calibration, RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
@@ -52,6 +53,23 @@ def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, tr
     ]  # fmt: skip
     assert all(request.command == "make" for request in trained)
     assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
+
+
+def test_finished_models_choose_what_corrects_their_intervals(tmp_path: Path, trained: list) -> None:
+    recipe = replace(TINY, calibration=(Calibration(("approach",), 2), Calibration(("waypoints", "opponents"), 3)))
+    steps = {step.title: step.total for step in make(Making("agilo", recipe, tmp_path, 1, "make"))}
+    assert [(r.zoo.name, [d.name.split("-")[0] for d in r.data]) for r in trained[1:]] == [
+        ("zoo-1", ["random", "round", "random"]),
+        ("zoo", ["random", "round", "calibration", "calibration", "random"]),
+    ]
+    assert [steps[f"calibration {k}: runs of {of}"] for k, of in ((1, "approach"), (2, "waypoints, opponents"))] == [
+        2,
+        6,
+    ]
+    manifests = [read_manifest(folder / "goToPose") for folder in trained[-1].data[:4]]
+    assert [(each["seed"], each.get("calibrates", False)) for each in manifests] == [
+        (7, False), (7, False), (8, True), (9, True)
+    ]  # fmt: skip
 
 
 def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypatch) -> None:
@@ -168,6 +186,8 @@ ROUND = "[[rounds]]\nsource = 'active'\nepisodes = 1\nscenarios = [{}]"
         ("episodes = 9\n" + ROUND.format("'a', 'b', 'a'"), "rounds.scenarios: 'a' is there twice, expected once"),
         ("episodes = 9\n[[rounds]]\nsource = 'guess'\nscenarios = []\nepisodes = 1", "'rounds.source' is 'guess'"),
         ("episodes = 9\n" + ROUND.format("'a'") + "\npool = 0", "rounds.pool is 0, expected at least 1"),
+        ("episodes = 9\n[[calibration]]\nscenarios = []\nepisodes = 0", "calibration.episodes is 0, expected at least"),
+        ("episodes = 9\n[[calibration]]\nscenarios = []\nepisodes = 1", "calibration.scenarios is empty, expected"),
         ("episodes = 9\nepochs = 3", "unknown key 'epochs'"),
         ("episodes = 9\n[[random]]\naction = 'reach'\nepisodes = 0", "random.episodes is 0, expected at least 1"),
         ("episodes = 9\n[training]\nkinds = ['durations']", "'training.kinds' is 'durations', expected one of"),
@@ -199,6 +219,7 @@ def test_a_recipe_that_is_not_utf_8_is_refused(tmp_path: Path) -> None:
         ("agilo", "[training]\nfeatures = 'joints'", "approachBall: arguments are x y phi v xg"),
         ("powercube", ROUND.format("'nope'"), "no scenario"),
         ("agilo", ROUND.format("'approach'"), "beside is 0, expected runs of goToPose beside objects"),
+        ("agilo", "[[calibration]]\nscenarios = ['nope']\nepisodes = 1", "no scenario 'nope' in soccer, expected one"),
         ("powercube", "beside = 4", "beside is 4, expected 0: no action has a model of success beside an object"),
     ],
 )

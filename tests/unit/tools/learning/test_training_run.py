@@ -6,10 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tailor.models.episodes.episodes import DataSet, Episode
+from tailor.models.cards.card import read_card
+from tailor.models.episodes.episodes import DataSet, Episode, write_part
+from tailor.models.episodes.manifest import write_manifest
 from tailor.models.training import success_training
+from tailor.schemas.errors import UsageError
 from tailor.tools.learning.training_request import TrainingRequest, reproduction_command, spaces_by_kind
-from tailor.tools.learning.training_run import context_jobs, own_jobs
+from tailor.tools.learning.training_run import context_jobs, own_jobs, train_action
+from tests.support import standin
 
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
 
@@ -63,6 +67,38 @@ def test_intervals_are_apart_only_where_both_sorts_of_episodes_determine_them(in
     assert "duration" in kinds
 
 
+def written(folder: Path, seed: int, late_s: float = 0.0, **entries: object) -> Path:
+    """A data set of planar drives, of which every sixth failed."""
+    made = enumerate(standin.episodes(150, seed))
+    episodes = [Episode(k, t[0], t, d + late_s, k % 6 > 0, "" if k % 6 else "late") for k, (t, d, _) in made]
+    folder.mkdir(parents=True)
+    write_part(folder / "part-000000.parquet", episodes, NAMES[:8])
+    arguments = [{"name": name, "unit": "", "lower": -4, "upper": 4} for name in NAMES[:8]]
+    about = {"robot": "agilo", "action": "goToPose", "arguments": arguments, "seed": seed, **entries}
+    write_manifest(folder, about)
+    return folder
+
+
+def test_success_learns_nothing_from_episodes_that_calibrate_and_cards_count_them(tmp_path) -> None:
+    own, calibrating = written(tmp_path / "a", 1), written(tmp_path / "b", 2, 3.0, on_policy=True, calibrates=True)
+    request = TrainingRequest("agilo", tmp_path / "zoo", learner="linear", failure_learner="tree", seed=3)
+    tests = {}
+    for zoo, folders in (("alone", [own]), ("both", [own, calibrating])):
+        rows = train_action(folders, replace(request, zoo=tmp_path / zoo))
+        tests[zoo] = {row["kind"]: row for row in rows}
+    assert tests["both"]["success"] == tests["alone"]["success"]
+    assert tests["both"]["duration"]["intervals"] != tests["alone"]["duration"]["intervals"]
+    card = read_card(tmp_path / "both" / "agilo" / "goToPose" / "duration.card.json")["episodes"]
+    assert (card["count"], card["calibrates"], [s.get("calibrates") for s in card["sources"]]) == (
+        300,
+        150,
+        [None, True],
+    )
+    assert read_card(tmp_path / "both" / "agilo" / "goToPose" / "success.card.json")["episodes"]["count"] == 150
+    with pytest.raises(UsageError, match="b: all episodes calibrate, expected some to learn from"):
+        list(train_action([calibrating], request))
+
+
 @pytest.mark.parametrize(
     ("entries", "flags"),
     [
@@ -71,6 +107,10 @@ def test_intervals_are_apart_only_where_both_sorts_of_episodes_determine_them(in
         ({"objects": 4}, "goToPose --beside-objects 4 --episodes 5 --seed 3"),
         ({"context": {"names": ["r"]}}, "goToPose --beside-object --episodes 5 --seed 3"),
         ({"scenarios": ["a", "b"], "on_policy": True}, "--on-policy a b --episodes 5 --seed 3"),
+        (
+            {"scenarios": ["a"], "on_policy": True, "calibrates": True},
+            "--on-policy a --calibrates --episodes 5 --seed 3",
+        ),
         ({"scenarios": ["a"], "situations": 20}, "--active a --pool 4 --episodes 5 --seed 3"),
     ],
 )
