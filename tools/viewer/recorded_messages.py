@@ -11,6 +11,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message, Odometry, PoseEstimate
+from tailor.schemas.packages.spec import RESERVED
 from tailor.schemas.typesystem import ros_type, type_of
 from tailor.tools.recordings.damage_notice import notice
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -80,16 +81,25 @@ def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list
     """All events of a recording that the page shows, on a time axis that starts with the first message.
 
     The damage of a damaged one is the first event.
+
+    Raises:
+      UsageError: See `timed`; or the recording has no message of the robot that the timeline is to show.
     """
     trial, damage = RunTimeline(robot=timeline.robot), DamageReport(complete=True)
+    wanted_robot, owners = timeline.robot, set[str]()
 
     def note(found: DamageReport) -> None:
         nonlocal damage
         damage = found
 
     better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
-    wanted = timed(path, sender, SENSED if better else (), note)
-    events = [event for t in wanted for event in _events_of(t, timeline)]
+    wanted, events = timed(path, sender, SENSED if better else (), note), []
+    for t in wanted:
+        owners.add(t.key.partition("/")[0])
+        events.extend(_events_of(t, timeline))
+    if wanted_robot and wanted_robot not in owners:
+        known = ", ".join(sorted(owners.difference(RESERVED))) or "none"
+        raise UsageError(f"{path}: no message of robot '{wanted_robot}', expected one of: {known}")
     text = notice(path, damage)
     return [Event(0.0, DAMAGE, {"text": text}), *events] if text else events
 

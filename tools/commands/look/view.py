@@ -70,6 +70,8 @@ def _explainer(arguments: argparse.Namespace) -> Explainer | None:
 def _write(arguments: argparse.Namespace) -> int:
     recordings: list[Path] = arguments.recordings
     [first, *others] = recordings
+    if repeated := next((path for path in recordings if recordings.count(path) > 1), None):
+        raise UsageError(f"{repeated} is there twice, expected each recording once")
     output: Path = arguments.output or (first.with_name("runs.html") if others else first.with_suffix(".html"))
     check_output("--output", output, (".html", ".htm"))
     with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work

@@ -131,6 +131,17 @@ def test_an_executive_that_is_not_in_the_recording_is_refused(command, recording
         run(command, recording, "--sender", "ef")
 
 
+def test_a_robot_that_is_not_in_the_recording_is_refused(recording, tmp_path) -> None:
+    with pytest.raises(UsageError, match="no message of robot 'b21', expected one of: agilo$"):
+        run(view, recording, "-o", tmp_path / "page.html", "--robot", "b21", "--no-models")
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_a_recording_beside_itself_is_refused(recording) -> None:
+    with pytest.raises(UsageError, match="run.mcap is there twice, expected each recording once"):
+        run(view, recording, recording)
+
+
 def test_view_is_the_same_page_every_time(recording, tmp_path, capsys) -> None:
     pages = [tmp_path / "a.html", tmp_path / "b.html"]
     for output in pages:
