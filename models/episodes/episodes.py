@@ -47,7 +47,7 @@ class Episode:
       finished: Whether the controller finished; False if the time limit was exceeded.
       work_j: Work of the drives from each tick to the next in joules, shape (t,); None if not recorded.
       on_policy: Whether an optimiser chose the arguments.
-      calibrates: Whether it only corrects the intervals of the models that chose it.
+      calibrates: Whether models of duration and energy do not learn from it, which chose it: it corrects intervals.
       in_context: Whether it was decided beside objects of its `ActionContext`, of which the arguments know nothing.
     """
 

@@ -13,7 +13,7 @@ Manifest = Mapping[str, Any]
 # entries of a manifest that determine the episodes, with "source": random, on-policy, active, recordings
 DRAW = ("source", "seed", "stream", "scenarios", "situations", "recordings", "models_sha256", "profile")
 PROBE = 6  # first episodes of a data set that a card repeats, to be run again where the source has changed
-CALIBRATES = "calibrates"  # entry of a manifest: its episodes correct intervals, and nothing is learned from them
+CALIBRATES = "calibrates"  # entry of a manifest: its episodes correct the intervals of the models that chose them
 SHORT = 12  # digits of a hash of a file in a card
 
 

@@ -41,7 +41,7 @@ class Round:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Runs with the models of all other episodes, to correct their intervals; nothing else is learned from them.
+    """Runs with the models of all other episodes, to correct their intervals; only successes are learned from them.
 
     Attributes:
       scenarios: Scenarios that are run.

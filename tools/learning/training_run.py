@@ -85,24 +85,16 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     """
     from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
-    from tailor.models.episodes.sources import CALIBRATES
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
-    by_itself = [without_context(each) for each in alone or sets]
-    learned = [each for each in by_itself if not each.manifest.get(CALIBRATES)]
-    if not learned:
-        raise UsageError(f"{folders[0]}: all episodes calibrate, expected some to learn from")
-    data, of_success = merge(by_itself), merge(learned)
+    data = merge([without_context(each) for each in alone or sets])
     if data.manifest["robot"] != request.robot:
         raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
     spaces = spaces_by_kind(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [
-        (of_success if kind == "success" else data, kind, learner, train, spaces[kind])
-        for kind, learner, train in own_jobs(of_success, request)
-    ]
+    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
     every = (*own, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
         try:
@@ -151,13 +143,14 @@ def own_jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str
 
     if data.manifest.get("objects"):
         return
-    beside = [episode.in_context for episode in data.episodes if episode.finished]
+    learned = [episode for episode in data.episodes if episode.finished and not episode.calibrates]
+    beside = [episode.in_context for episode in learned]
     if min(beside.count(True), beside.count(False)) >= MIN_APART:
         yield "duration", request.learner, training.train_duration_alone
         yield "duration_beside", request.learner, training.train_duration_beside
     else:
         yield "duration", request.learner, training.train_duration
-    with_energy = sum(ENERGY.is_recorded(episode) and episode.finished for episode in data.episodes)
+    with_energy = sum(map(ENERGY.is_recorded, learned))
     if with_energy >= training.MIN_EPISODES:
         yield "energy", request.learner, partial(training.train_regression, ENERGY)
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)

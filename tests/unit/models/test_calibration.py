@@ -105,7 +105,7 @@ def test_choices_take_the_place_of_those_of_former_models_and_random_episodes_st
         lower, upper = intervals.around(fresh.astype(np.float32), np.zeros(len(seconds)), spread)
         held.append(coverage(seconds, lower, upper)["covers_pct"])
     assert held[0] > 95
-    assert held[1:] == [pytest.approx(90, abs=2.5)] * 2
+    assert held[1:] == [pytest.approx(91, abs=3)] * 2
 
 
 def test_skewed_errors_have_skewed_intervals(intervals) -> None:

@@ -54,6 +54,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
     configure_cluster(parser)
     parser.add_argument("--seed", type=seed, help="random seed (default: %(default)s)")
     parser.add_argument("--out", type=Path, help="folder for the data sets (default: data/ROBOT)")
+    _configure_sources(parser)
+    parser.add_argument(
+        "--pool",
+        type=at_least(1, "--pool"),
+        help=f"--active: situations per episode (default: {POOL})",
+    )
+    parser.add_argument(
+        "--calibrates",
+        action="store_true",
+        help="--on-policy: the runs correct the intervals of the models that choose in them, which learn no durations "
+        "from them",
+    )
+    parser.add_argument("--profile", help="profile of the body, e.g. degraded (default: the one that ships)")
+    parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
+    parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
+    parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
+    parser.set_defaults(**SIMULATED)
+
+
+def _configure_sources(parser: argparse.ArgumentParser) -> None:
+    """Declare where episodes come from, if not from random arguments."""
     other = parser.add_mutually_exclusive_group()
     other.add_argument(
         "--on-policy", nargs="+", metavar="SCENARIO", help="run scenarios with the current models instead"
@@ -79,21 +100,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="the same with N objects noted after each way, where the controller would have ignored them",
     )
-    parser.add_argument(
-        "--pool",
-        type=at_least(1, "--pool"),
-        help=f"--active: situations per episode (default: {POOL})",
-    )
-    parser.add_argument(
-        "--calibrates",
-        action="store_true",
-        help="--on-policy: learn nothing from these runs; they correct the intervals of models of all other episodes",
-    )
-    parser.add_argument("--profile", help="profile of the body, e.g. degraded (default: the one that ships)")
-    parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
-    parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
-    parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
-    parser.set_defaults(**SIMULATED)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -31,7 +31,7 @@ MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
 class Policy:
     """Scenarios to run with the current models, and the folder of their data sets, one per action.
 
-    With `calibrates` nothing is learned from the episodes: they correct the intervals of these very models.
+    With `calibrates` no duration is learned from the episodes: they correct the intervals of these very models.
     """
 
     domain: str

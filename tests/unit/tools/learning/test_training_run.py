@@ -79,23 +79,24 @@ def written(folder: Path, seed: int, late_s: float = 0.0, **entries: object) -> 
     return folder
 
 
-def test_success_learns_nothing_from_episodes_that_calibrate_and_cards_count_them(tmp_path) -> None:
+def test_no_duration_is_learned_from_episodes_that_calibrate_and_cards_count_them(tmp_path) -> None:
     own, calibrating = written(tmp_path / "a", 1), written(tmp_path / "b", 2, 3.0, on_policy=True, calibrates=True)
-    request = TrainingRequest("agilo", tmp_path / "zoo", learner="linear", failure_learner="tree", seed=3)
+    request = TrainingRequest("agilo", tmp_path, learner="linear", failure_learner="tree", seed=3)
     tests = {}
     for zoo, folders in (("alone", [own]), ("both", [own, calibrating])):
         rows = train_action(folders, replace(request, zoo=tmp_path / zoo))
         tests[zoo] = {row["kind"]: row for row in rows}
-    assert tests["both"]["success"] == tests["alone"]["success"]
+    errors = [tests[zoo]["duration"]["mae_s"] for zoo in tests]
+    assert errors[0] == errors[1]
     assert tests["both"]["duration"]["intervals"] != tests["alone"]["duration"]["intervals"]
+    assert tests["both"]["success"]["n"] == pytest.approx(2 * tests["alone"]["success"]["n"], abs=1)
     card = read_card(tmp_path / "both" / "agilo" / "goToPose" / "duration.card.json")["episodes"]
     assert (card["count"], card["calibrates"], [s.get("calibrates") for s in card["sources"]]) == (
         300,
         150,
         [None, True],
     )
-    assert read_card(tmp_path / "both" / "agilo" / "goToPose" / "success.card.json")["episodes"]["count"] == 150
-    with pytest.raises(UsageError, match="b: all episodes calibrate, expected some to learn from"):
+    with pytest.raises(UsageError, match="b: 0 finished episodes, expected at least 40"):
         list(train_action([calibrating], request))
 
 

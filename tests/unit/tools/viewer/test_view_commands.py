@@ -132,13 +132,13 @@ def test_an_executive_that_is_not_in_the_recording_is_refused(command, recording
 
 
 def test_a_robot_that_is_not_in_the_recording_is_refused(recording, tmp_path) -> None:
-    with pytest.raises(UsageError, match="no message of robot 'b21', expected one of: agilo$"):
+    with pytest.raises(UsageError, match=r"no message of robot 'b21', expected one of: agilo$"):
         run(view, recording, "-o", tmp_path / "page.html", "--robot", "b21", "--no-models")
     assert not (tmp_path / "page.html").exists()
 
 
 def test_a_recording_beside_itself_is_refused(recording) -> None:
-    with pytest.raises(UsageError, match="run.mcap is there twice, expected each recording once"):
+    with pytest.raises(UsageError, match=r"run.mcap is there twice, expected each recording once"):
         run(view, recording, recording)
 
 
