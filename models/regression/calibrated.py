@@ -10,7 +10,7 @@ from sklearn.base import clone
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import episode_indices
-from tailor.models.regression.intervals import Rows, fit_intervals
+from tailor.models.regression.intervals import OWN, Rows, fit_intervals
 from tailor.models.regression.out_of_fold import out_of_fold
 from tailor.models.trees.regression_model import RegressionModel, Values
 
@@ -50,9 +50,13 @@ class CalibratedRegressor(RegressionModel):
         _, first = np.unique(episodes, return_index=True)
         kinds = np.zeros(len(y), np.int64) if kinds is None else np.asarray(kinds)
         first = first[kinds[first] != NOT_JUDGED]
-        unseen_rows = Rows(X[first], std[first], (y - mean)[first])
-        chosen = None if choices is None else self._errors_at(*choices)
-        self.intervals_ = fit_intervals(unseen_rows, episodes[first], self.random_state, kinds[first], chosen)
+        rows, groups, kinds = Rows(X[first], std[first], (y - mean)[first]), episodes[first], kinds[first]
+        if choices is not None:
+            own = self._errors_at(*choices)
+            numbers = episodes.max() + 1 + np.arange(len(own.errors))
+            rows, groups = rows.and_those_of(own), np.concatenate([groups, numbers])
+            kinds = np.concatenate([kinds, np.full(len(numbers), OWN)])
+        self.intervals_ = fit_intervals(rows, groups, self.random_state, kinds)
         return self
 
     def _errors_at(self, X: Any, y: Any) -> Rows:

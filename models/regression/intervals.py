@@ -20,16 +20,15 @@ from tailor.models.regression.out_of_fold import held_out_parts
 Floats = NDArray[np.float32]
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-Grown = tuple[SplitTree, Array, Array]
 
 LEVEL = 0.9
-RANDOM = 0  # kind of episodes with random arguments
+RANDOM, FORMER, OWN = 0, 1, 2  # kinds of episodes: with random arguments, chosen by former models, by this one
 MAX_LEAVES = 16
 MIN_LEAF = 60  # episodes in a leaf: fewer do not determine a twentieth of them
 THIRDS = 3  # of the widths, corrected separately
 MIN_PART = 100  # episodes in a third: nine tenths of fewer are known to worse than three points
-MIN_CHOICES = 100  # episodes that the model itself chose: fewer do not correct it
-POWERS = tuple(k / 8 for k in range(11))  # of the widths, from equal ones to more different ones, for choices
+MIN_OWN = 100  # episodes that the model itself chose: fewer do not correct it
+POWERS = tuple(k / 8 for k in range(9))  # of the widths of own choices, from equal widths to those of the leaves
 LEAST = 1e-3  # s or J, half of the narrowest interval
 
 
@@ -46,6 +45,14 @@ class Rows:
     features: Array
     std: Array
     errors: Array
+
+    def and_those_of(self, others: Rows) -> Rows:
+        """These rows, then the others."""
+        pairs = zip(self._arrays(), others._arrays(), strict=True)
+        return Rows(*(np.concatenate(pair) for pair in pairs))
+
+    def _arrays(self) -> tuple[Array, Array, Array]:
+        return self.features, self.std, self.errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,35 +80,27 @@ def with_std(features: NDArray[np.floating], std: NDArray[np.floating]) -> Float
     return np.column_stack([features, std]).astype(np.float32)
 
 
-def fit_intervals(unseen: Rows, groups: Numbers, seed: int, kinds: Numbers, choices: Rows | None = None) -> Intervals:
+def fit_intervals(rows: Rows, groups: Numbers, seed: int, kinds: Numbers) -> Intervals:
     """Fit intervals that hold LEVEL of the errors of each kind of episodes, in every third of their widths.
 
     Args:
-      unseen: Episodes, each as models predict it that were fitted without it.
+      rows: Episodes, each as models predict it that were fitted without it.
       groups: Episode of each row, shape (n,).
       seed: Seed of the folds.
-      kinds: Kind of each row, shape (n,): `RANDOM`, or another number if an optimiser chose it.
-      choices: Episodes that the finished model chose, at least MIN_CHOICES. Refinement prefers where a model's spread
-        is too small, and choices of other models do not show where this is so. They take the place of those.
+      kinds: Kind of each row, shape (n,): `RANDOM`; `FORMER` if a former model chose it; `OWN`, none or many, if the
+        finished model chose it, which has not learned from it. Refinement prefers where a model's spread is too small,
+        and former choices do not show where this is so: own ones take their place.
     """
-    rows, errors = with_std(unseen.features, unseen.std), unseen.errors
+    with_spread, errors = with_std(rows.features, rows.std), rows.errors
     width, excess = np.empty(len(errors)), np.empty(len(errors))
     for apart in held_out_parts(groups, seed):
-        width[apart], excess[apart] = _judged(_grown(rows[~apart], errors[~apart]), rows[apart], errors[apart])
-    grown = splits, lower, upper = _grown(rows, errors)
-    corrections = _corrections(width, excess, kinds, upper - lower, choices is not None)
-    if choices is not None:
-        corrections.append(_by_power(grown, with_std(choices.features, choices.std), choices.errors))
-    needed = np.max(corrections, axis=0)
-    factor = np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
+        splits, lower, upper = _grown(with_spread[~apart], errors[~apart])
+        leaf = splits.leaf_of(with_spread[apart])
+        width[apart] = upper[leaf] - lower[leaf]
+        excess[apart] = np.where(errors[apart] < 0, errors[apart] / lower[leaf], errors[apart] / upper[leaf])
+    splits, lower, upper = _grown(with_spread, errors)
+    factor = _factors(width, excess, kinds, upper - lower)
     return Intervals(splits, (factor * lower).astype(np.float32), (factor * upper).astype(np.float32))
-
-
-def _judged(grown: Grown, rows: Floats, errors: Array) -> tuple[Array, Array]:
-    """Widths of the intervals around predictions, and the errors over the end on their side, shapes (n,)."""
-    splits, lower, upper = grown
-    leaf = splits.leaf_of(rows)
-    return upper[leaf] - lower[leaf], np.where(errors < 0, errors / lower[leaf], errors / upper[leaf])
 
 
 def conformal_quantile(values: Array, level: float) -> float:
@@ -110,7 +109,7 @@ def conformal_quantile(values: Array, level: float) -> float:
     return float(np.sort(values)[rank - 1])
 
 
-def _grown(rows: Floats, errors: Array) -> Grown:
+def _grown(rows: Floats, errors: Array) -> tuple[SplitTree, Array, Array]:
     """A tree by the size of the errors, and both quantiles in each leaf."""
     tree = DecisionTreeRegressor(max_leaf_nodes=MAX_LEAVES, min_samples_leaf=min(MIN_LEAF, len(errors)), random_state=0)
     splits = splits_of(tree.fit(rows, np.abs(errors)))
@@ -121,38 +120,37 @@ def _grown(rows: Floats, errors: Array) -> Grown:
     return splits, lower, upper
 
 
-def _corrections(width: Array, excess: Array, kinds: Numbers, leaf_width: Array, only_random: bool) -> list[Array]:
-    """Corrections of each leaf, (l,), so that unseen errors are held in each third of the widths.
+def _factors(width: Array, excess: Array, kinds: Numbers, leaf_width: Array) -> Array:
+    """Correction of each leaf, (l,), so that unseen errors are held in each third of the widths.
 
-    Where kinds of episodes differ more than the features tell, that of the kind that needs most counts: the
+    Where kinds of episodes differ more than the features tell, the correction is that of the kind that needs most: the
     optimiser's choices are a quarter of the episodes, and what refinement uses. Each kind has thirds of its own, as its
     widths are others: the widest choices would else be judged among random episodes that are as wide.
     """
-    of_kinds = {kind: kinds == kind for kind in np.unique(kinds).tolist() if not only_random or kind == RANDOM}
-    groups = [group for group in of_kinds.values() if group.sum() >= MIN_LEAF]
-    if not only_random:
-        groups.insert(0, np.ones(len(kinds), bool))
-    return [_by_parts(width[group], excess[group], leaf_width) for group in groups]
+    own = kinds == OWN
+    learned = (kinds == RANDOM,) if own.any() else (np.ones(len(kinds), bool), kinds == RANDOM, kinds == FORMER)
+    groups = [group for group in learned if group.sum() >= MIN_LEAF or group.all()]
+    corrections = [_by_parts(width[group], excess[group], leaf_width) for group in groups]
+    corrections += [_by_power(width[own], excess[own], leaf_width)] if own.any() else []
+    needed = np.max(corrections, axis=0)
+    return np.where(needed > 0.0, needed, conformal_quantile(excess, LEVEL))
 
 
-def _by_power(grown: Grown, rows: Floats, errors: Array) -> Array:
+def _by_power(width: Array, excess: Array, leaf_width: Array) -> Array:
     """Correction of each leaf, (l,), by choices of the model itself: a scale and a power of the leaf's width.
 
     Refinement prefers leaves that came out too narrow, so among its choices the widths differ less than they seem to.
     The power is that with the least mean interval score (Winkler 1972) of the choices.
     """
-    splits, lower, upper = grown
-    leaf, leaf_width, size = splits.leaf_of(rows), upper - lower, np.abs(errors)
-    end = np.where(errors < 0, -lower[leaf], upper[leaf])
-    usual = np.exp(np.log(leaf_width[leaf]).mean())
-    best, least = np.ones(len(lower)), np.inf
+    usual = np.exp(np.log(width).mean())
+    best, least = np.ones(len(leaf_width)), np.inf
     for power in POWERS:
-        factor = (leaf_width / usual) ** (power - 1)
-        factor *= conformal_quantile(size / (factor[leaf] * end), LEVEL)
-        outside = np.maximum(size - factor[leaf] * end, 0)
-        score = float(np.mean((factor * leaf_width)[leaf] + 2 / (1 - LEVEL) * outside))
+        factor = (width / usual) ** (power - 1)
+        scale = conformal_quantile(excess / factor, LEVEL)
+        outside = np.maximum(excess - scale * factor, 0) * width / 2
+        score = float(np.mean(scale * factor * width + 2 / (1 - LEVEL) * outside))
         if score < least:
-            best, least = factor, score
+            best, least = scale * (leaf_width / usual) ** (power - 1), score
     return best
 
 

@@ -19,7 +19,7 @@ from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
-from tailor.models.regression.intervals import MIN_CHOICES
+from tailor.models.regression.intervals import MIN_OWN
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
 from tailor.models.training.first_ticks import best_n_i
@@ -118,7 +118,7 @@ def train_regression(
 
 def _choices(target: RegressionTarget, episodes: Sequence[Episode]) -> Examples | None:
     """The first rows of the episodes that correct the intervals; None if they are too few for that."""
-    return target.examples(episodes, 1) if len(episodes) >= MIN_CHOICES else None
+    return target.examples(episodes, 1) if len(episodes) >= MIN_OWN else None
 
 
 def _tested(

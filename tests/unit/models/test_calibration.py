@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tailor.models.regression.intervals import MIN_CHOICES, Rows, fit_intervals
+from tailor.models.regression.intervals import FORMER, MIN_OWN, OWN, RANDOM, Rows, fit_intervals
 from tailor.models.training.calibration import MIN_EPISODES, coverage, judged
 
 
@@ -72,40 +72,59 @@ def test_the_widest_choices_are_held_though_random_episodes_are_wider() -> None:
     assert min(coverage(errors[chosen], lower[chosen], upper[chosen])["covers_thirds_pct"]) > 89
 
 
-@pytest.mark.parametrize(("chosen", "held"), [(MIN_CHOICES, 5), (3000, 2)])
-def test_choices_of_the_finished_model_correct_its_intervals(chosen: int, held: float) -> None:
-    """Where the model that chose them errs half as much again, and those of former models show nothing of it."""
-    features, std, errors = heteroscedastic(3000, 1)
-    former = np.arange(3000) % 4 == 0
-    own = Rows(*heteroscedastic(chosen, 4))
-    own = Rows(own.features, own.std, 1.5 * own.errors)
-    kinds = former.astype(np.int64)
-    without, corrected = (
-        fit_intervals(Rows(features, std, errors), np.arange(3000), seed=1, kinds=kinds, choices=choices)
-        for choices in (None, own)
-    )
+def fitted_with(own: Rows | None, former_err: float = 1.0, count: int = 3000):
+    """Intervals of random episodes, a quarter of them former choices that err by another factor, and own choices."""
+    rows = Rows(*heteroscedastic(count, 1))
+    kinds = np.where(np.arange(count) % 4 == 0, FORMER, RANDOM)
+    rows = Rows(rows.features, rows.std, np.where(kinds == FORMER, former_err, 1) * rows.errors)
+    if own is not None:
+        rows, kinds = rows.and_those_of(own), np.concatenate([kinds, np.full(len(own.errors), OWN)])
+    return fit_intervals(rows, np.arange(len(kinds)), seed=1, kinds=kinds)
+
+
+def held_pct(intervals, err: float = 1.0):
+    """Share of fresh errors, larger by a factor, that intervals hold, in percent."""
     features, std, errors = heteroscedastic(30_000, 2)
-    covers = []
-    for intervals in (without, corrected):
-        lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
-        covers.append(coverage(1.5 * errors, lower, upper)["covers_pct"])
-    assert covers == [pytest.approx(71, abs=2), pytest.approx(90, abs=held)]
+    lower, upper = intervals.around(features.astype(np.float32), np.zeros(len(errors)), std)
+    return coverage(err * errors, lower, upper)
 
 
-def test_choices_take_the_place_of_those_of_former_models_and_random_episodes_stay_held() -> None:
-    features, std, errors = heteroscedastic(6000, 1)
-    former = np.arange(6000) % 4 == 0
-    errors[former] *= 3
-    own = Rows(*heteroscedastic(600, 4))
-    held = []
-    for choices in (None, own, Rows(own.features, own.std, 0.2 * own.errors)):
-        rows = Rows(features, std, errors)
-        intervals = fit_intervals(rows, np.arange(6000), seed=1, kinds=former.astype(np.int64), choices=choices)
-        fresh, spread, seconds = heteroscedastic(30_000, 2)
-        lower, upper = intervals.around(fresh.astype(np.float32), np.zeros(len(seconds)), spread)
-        held.append(coverage(seconds, lower, upper)["covers_pct"])
-    assert held[0] > 95
-    assert held[1:] == [pytest.approx(91, abs=3)] * 2
+def own_choices(count: int, err: float) -> Rows:
+    features, std, errors = heteroscedastic(count, 4)
+    return Rows(features, std, err * errors)
+
+
+@pytest.mark.parametrize(("count", "within"), [(MIN_OWN, 5), (3000, 2)])
+def test_choices_of_the_finished_model_correct_its_intervals(count: int, within: float) -> None:
+    """Where the model errs half as much again, and those of former models show nothing of it."""
+    without, corrected = (fitted_with(own) for own in (None, own_choices(count, 1.5)))
+    assert held_pct(without, 1.5)["covers_pct"] == pytest.approx(71, abs=2)
+    assert held_pct(corrected, 1.5)["covers_pct"] == pytest.approx(90, abs=within)
+
+
+@pytest.mark.parametrize("err", [1.0, 0.2])
+def test_own_choices_take_the_place_of_former_ones_and_random_episodes_stay_held(err: float) -> None:
+    assert held_pct(fitted_with(None, former_err=3.0))["covers_pct"] > 95
+    corrected = fitted_with(own_choices(600, err), former_err=3.0, count=6000)
+    assert held_pct(corrected)["covers_pct"] == pytest.approx(91, abs=3)
+
+
+def test_leaves_that_own_choices_prefer_for_being_too_narrow_are_widened_most() -> None:
+    """As refinement does, choices are taken where a noisy width came out small; their errors are all alike."""
+    rng = np.random.default_rng(5)
+
+    def rows(count: int):
+        return rng.uniform(0, 1, (count, 1)), np.full(count, 0.1), rng.normal(0, 1, count)
+
+    features, std, errors = rows(1000)
+    narrow = np.where(features[:, 0] < 0.3, 0.6, 1.3) * errors
+    own = Rows(*rows(300))
+    both = Rows(features, std, narrow).and_those_of(own)
+    kinds = np.concatenate([np.full(1000, FORMER), np.full(300, OWN)])
+    intervals = fit_intervals(both, np.arange(1300), seed=1, kinds=kinds)
+    fresh, spread, seconds = rows(30_000)
+    lower, upper = intervals.around(fresh.astype(np.float32), np.zeros(len(seconds)), spread)
+    assert coverage(seconds, lower, upper)["covers_thirds_pct"] == pytest.approx([90, 90, 90], abs=4)
 
 
 def test_skewed_errors_have_skewed_intervals(intervals) -> None:
