@@ -33,7 +33,11 @@ class Timed:
 
 
 def timed(
-    path: Path, sender: str = "", without: Collection[type] = (), read: Callable[[DamageReport], None] = lambda _: None
+    path: Path,
+    sender: str = "",
+    without: Collection[type] = (),
+    read: Callable[[DamageReport], None] = lambda _: None,
+    robot: str = "",
 ) -> Iterator[Timed]:
     """Messages of a recording in the order of their reception, without damaged ones.
 
@@ -42,18 +46,21 @@ def timed(
       sender: Skip executives whose id does not begin with this.
       without: Skip messages of these types, without decoding them.
       read: Called with the damage of the file, when all of it has been read.
+      robot: There must be a message of this robot, also if it is skipped; empty: of any or none.
 
     Raises:
-      UsageError: The file is no recording, or has no readable message, or none of such an executive.
+      UsageError: The file is no recording, or has no readable message, or none of such an executive or robot.
     """
     began_ns: int | None = None
     executives: set[str] = set()
+    owners: set[str] = set()
     skipped = {ros_type(kind) for kind in without}
     recording = open_recording(path)
     for recorded in recording.messages():
         kind = type_of(recorded.ros_type)
         if kind is None:
             continue
+        owners.add(recorded.key.partition("/")[0])
         if recorded.key.startswith(EXECUTIVE):
             executives.add(recorded.sender)
             if not recorded.sender.startswith(sender):
@@ -67,6 +74,7 @@ def timed(
     if began_ns is None:
         raise UsageError(f"{path}: no readable message, expected a recording of a run")
     _check_sender(path, sender, executives)
+    _check_robot(path, robot, owners)
     read(recording.damage)
 
 
@@ -77,29 +85,31 @@ def _check_sender(path: Path, sender: str, executives: Collection[str]) -> None:
         raise UsageError(f"{path}: no executive whose id begins with '{sender}', expected one of: {known}")
 
 
+def _check_robot(path: Path, robot: str, owners: Collection[str]) -> None:
+    """Raise UsageError if no key in a recording begins with the name of the robot."""
+    if robot and robot not in owners:
+        known = ", ".join(sorted(set(owners).difference(RESERVED))) or "none"
+        raise UsageError(f"{path}: no message of robot '{robot}', expected one of: {known}")
+
+
 def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:
     """All events of a recording that the page shows, on a time axis that starts with the first message.
 
     The damage of a damaged one is the first event.
 
     Raises:
-      UsageError: See `timed`; or the recording has no message of the robot that the timeline is to show.
+      UsageError: See `timed`; the robot is that which the timeline is to show.
     """
-    trial, damage = RunTimeline(robot=timeline.robot), DamageReport(complete=True)
-    wanted_robot, owners = timeline.robot, set[str]()
+    robot, damage = timeline.robot, DamageReport(complete=True)
+    trial = RunTimeline(robot=robot)
 
     def note(found: DamageReport) -> None:
         nonlocal damage
         damage = found
 
     better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
-    wanted, events = timed(path, sender, SENSED if better else (), note), []
-    for t in wanted:
-        owners.add(t.key.partition("/")[0])
-        events.extend(_events_of(t, timeline))
-    if wanted_robot and wanted_robot not in owners:
-        known = ", ".join(sorted(owners.difference(RESERVED))) or "none"
-        raise UsageError(f"{path}: no message of robot '{wanted_robot}', expected one of: {known}")
+    wanted = timed(path, sender, SENSED if better else (), note, robot)
+    events = [event for t in wanted for event in _events_of(t, timeline)]
     text = notice(path, damage)
     return [Event(0.0, DAMAGE, {"text": text}), *events] if text else events
 

@@ -137,6 +137,15 @@ def test_a_robot_that_is_not_in_the_recording_is_refused(recording, tmp_path) ->
     assert not (tmp_path / "page.html").exists()
 
 
+def test_a_robot_of_which_only_its_odometry_was_recorded_is_in_the_recording(tmp_path, capsys) -> None:
+    """Where the executive's belief is drawn, odometry is not read at all."""
+    run_of = [t for t in synthetic_run.soccer_run() if t.key.startswith("exec/") or t.key == "agilo/odom"]
+    assert any(t.key == "agilo/odom" for t in run_of)
+    recording = written(tmp_path / "some.mcap", run_of)
+    assert run(view, recording, "--robot", "agilo", "--no-models") == 0
+    capsys.readouterr()
+
+
 def test_a_recording_beside_itself_is_refused(recording) -> None:
     with pytest.raises(UsageError, match=r"run.mcap is there twice, expected each recording once"):
         run(view, recording, recording)
