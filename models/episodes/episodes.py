@@ -153,7 +153,7 @@ def read_data_set(folder: Path) -> DataSet:
     digest = hashlib.sha256()
     for path in sorted(folder.glob("part-*.parquet")):
         digest.update(path.read_bytes())
-        episodes.extend(_episodes(read_part(path, names), manifest))
+        episodes.extend(_episodes(read_part(path, names), names, manifest))
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
         repeated = next(number for number, count in Counter(numbers).items() if count > 1)
@@ -200,8 +200,7 @@ def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
     return [manifest.get(key) for key in ("seed", "stream", "source", "scenarios", "models_sha256", "profile")]
 
 
-def _episodes(table: pa.Table, manifest: Mapping[str, Any]) -> list[Episode]:
-    names = [argument["name"] for argument in manifest["arguments"]]
+def _episodes(table: pa.Table, names: Sequence[str], manifest: Mapping[str, Any]) -> list[Episode]:
     on_policy, calibrates = bool(manifest.get("on_policy")), bool(manifest.get(CALIBRATES))
     column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
     failure = table["failure"].to_pylist()

@@ -10,7 +10,7 @@ from sklearn.base import clone
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from tailor.models.episodes.episode_groups import episode_indices
-from tailor.models.regression.intervals import OWN, Rows, fit_intervals
+from tailor.models.regression.intervals import OWN, RANDOM, Rows, fit_intervals
 from tailor.models.regression.out_of_fold import out_of_fold
 from tailor.models.trees.regression_model import RegressionModel, Values
 
@@ -48,7 +48,7 @@ class CalibratedRegressor(RegressionModel):
         unseen = getattr(self.inner_, "out_of_fold_", None)  # a learner that was chosen by its errors has them
         mean, std = unseen or out_of_fold(lambda: clone(self.inner), X, y, episodes, self.random_state)
         _, first = np.unique(episodes, return_index=True)
-        kinds = np.zeros(len(y), np.int64) if kinds is None else np.asarray(kinds)
+        kinds = np.full(len(y), RANDOM) if kinds is None else np.asarray(kinds)
         first = first[kinds[first] != NOT_JUDGED]
         rows, groups, kinds = Rows(X[first], std[first], (y - mean)[first]), episodes[first], kinds[first]
         if choices is not None:

@@ -48,11 +48,11 @@ class Rows:
 
     def and_those_of(self, others: Rows) -> Rows:
         """These rows, then the others."""
-        pairs = zip(self._arrays(), others._arrays(), strict=True)
-        return Rows(*(np.concatenate(pair) for pair in pairs))
-
-    def _arrays(self) -> tuple[Array, Array, Array]:
-        return self.features, self.std, self.errors
+        return Rows(
+            np.concatenate([self.features, others.features]),
+            np.concatenate([self.std, others.std]),
+            np.concatenate([self.errors, others.errors]),
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from tailor.models.episodes.regression_targets import DURATION, RegressionTarget
 from tailor.models.features.features import FeatureSpace
 from tailor.models.regression.blend import BlendedRegressor
 from tailor.models.regression.calibrated import NOT_JUDGED, CalibratedRegressor
-from tailor.models.regression.intervals import MIN_OWN
+from tailor.models.regression.intervals import FORMER, MIN_OWN, RANDOM
 from tailor.models.training import learners, scores
 from tailor.models.training.calibration import judged
 from tailor.models.training.first_ticks import best_n_i
@@ -96,7 +96,10 @@ def train_regression(
     choices = _choices(target, [episode for episode in usable if episode.calibrates and judges(episode)])
     rng = np.random.default_rng(seed)
     judging = [episode for episode in finished if judges(episode)]
-    kinds = {episode.number: int(episode.on_policy) if judges(episode) else NOT_JUDGED for episode in finished}
+    kinds = {
+        episode.number: (FORMER if episode.on_policy else RANDOM) if judges(episode) else NOT_JUDGED
+        for episode in finished
+    }
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
     singles = learners.single_learners(learners.learner_name(target.kind, learner), seed)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Settings, make_context
@@ -55,7 +54,7 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
     """
-    about: dict[str, Any] = {"source": "lock-step, refined choices", "episodes": policy.runs}
+    about = {"source": "lock-step, refined choices", "episodes": policy.runs}
     about |= {CALIBRATES: True} if policy.calibrates else {}
     prepare_chosen(policy, about, policy.jobs, resume)
     missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]

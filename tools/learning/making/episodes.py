@@ -39,8 +39,7 @@ def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterato
             yield Step(f"{title}: {step.title}", step.done, step.total)
         return
     policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where)
-    running = policy_runs.run_policy(policy, making.jobs)
-    yield from counted(f"{title}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
+    yield from _run(policy, title, making.jobs)
 
 
 def gather_calibration(making: Making, zoo: Path) -> Iterator[Step]:
@@ -49,8 +48,12 @@ def gather_calibration(making: Making, zoo: Path) -> Iterator[Step]:
     for number, (each, folder) in enumerate(zip(recipe.calibration, making.calibration, strict=True)):
         where = (recipe.seed + before + number, str(zoo), folder, recipe.profile)
         policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where, calibrates=True)
-        running = policy_runs.run_policy(policy, making.jobs)
-        yield from counted(f"calibration {number + 1}: runs of {', '.join(each.scenarios)}", running, len(policy.jobs))
+        yield from _run(policy, f"calibration {number + 1}", making.jobs)
+
+
+def _run(policy: policy_runs.Policy, title: str, jobs: int) -> Iterator[Step]:
+    running = policy_runs.run_policy(policy, jobs)
+    yield from counted(f"{title}: runs of {', '.join(policy.scenarios)}", running, len(policy.jobs))
 
 
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:
