@@ -20,6 +20,7 @@ from tailor.tools.learning.recipe import Round, read_recipe, recipe_path
 from tailor.tools.parallel.steps import show
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
+SEEDS = 20  # of each replica: every round and calibration has the next one
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
       UsageError: The robot's models have no recipe, or see `make`.
     """
     shipped = read_recipe(recipe_path(recipe.robot))
-    training = replace(shipped.training, seed=FIRST_SEED + number)  # a set differs in all that is drawn
+    training = replace(shipped.training, seed=FIRST_SEED + SEEDS * number)  # a set differs in all that is drawn
     own = replace(shipped, seed=training.seed, training=training)
     if recipe.episodes is not None:
         own = replace(own, episodes=recipe.episodes, random=())
@@ -96,6 +97,7 @@ def over_models(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 def _over(rows: list[dict[str, Any]]) -> dict[str, Any]:
     gains = np.array([row["improvement_pct"] for row in rows])
     shared = [key for key in rows[0] if all(key in row for row in rows)]  # a set whose runs all fail lacks some
+    totals = np.array([row["total_pct"] for row in rows]) if "total_pct" in shared else None
     means = [key for key in shared if key.startswith("mean_") or key.endswith(("_greedy", "_refined"))]
     return {
         "scenario": rows[0]["scenario"],
@@ -109,6 +111,7 @@ def _over(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "p_value": p_shown(float(stats.ttest_1samp(gains, 0.0).pvalue)),
         "least_pct": float(gains.min()),
         "most_pct": float(gains.max()),
+        **({} if totals is None else {"total_pct": float(totals.mean()), "total_ci95": mean_interval(totals)}),
         "slower_pct": float(np.mean([row["slower_pct"] for row in rows])),
         **{key: float(np.mean([row[key] for row in rows])) for key in means},
     }

@@ -17,6 +17,7 @@ from tailor.tools.evaluations.assertion import figure15, figure16
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live import live
+from tailor.tools.evaluations.models import learning_curves
 from tailor.tools.evaluations.oracles import grid
 from tailor.tools.evaluations.oracles.grid import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
@@ -193,11 +194,14 @@ def test_unknown_scenario_is_a_usage_error(module):
 def test_the_row_over_models_has_an_interval_between_models():
     row = {"scenario": "soccer", "horizon": 2, "n": 100, "mean_greedy_s": 12.0, "mean_refined_s": 11.0}
     row |= {"slower_pct": 10.0, "contacts_pct_refined": 1.0}
-    (over,) = replicas.over_models([{**row, "improvement_pct": gain} for gain in (8.0, 9.0, 10.0)])
+    gains = (8.0, 9.0, 10.0)
+    (over,) = replicas.over_models([{**row, "improvement_pct": gain, "total_pct": gain + 1} for gain in gains])
     assert (over["n"], over["improvement_pct"], over["least_pct"], over["most_pct"]) == (300, 9.0, 8.0, 10.0)
     assert over["ci95"] == pytest.approx((9 - 4.303 / np.sqrt(3), 9 + 4.303 / np.sqrt(3)), abs=0.01)
     assert (over["unit"], over["units"], over["contacts_pct_refined"]) == ("set of models", 3, 1.0)
     assert over["p_value"] == 0.004
+    assert over["total_pct"] == 10.0
+    assert over["total_ci95"] == pytest.approx((10 - 4.303 / np.sqrt(3), 10 + 4.303 / np.sqrt(3)), abs=0.01)
 
 
 def test_scenarios_and_horizons_have_rows_of_their_own_over_models():
@@ -206,6 +210,16 @@ def test_scenarios_and_horizons_have_rows_of_their_own_over_models():
     better = [{**kind, "improvement_pct": 10.0} for kind in kinds]
     assert len(replicas.over_models([*kinds, *better])) == 4
     assert replicas.over_models(kinds) == []
+
+
+def test_no_two_replicas_share_a_seed_in_any_round(monkeypatch, tmp_path):
+    monkeypatch.setattr(replicas, "show", lambda *_: None)
+    seeds = []
+    for number in range(1, 6):
+        recipe = replicas.replica(replicas.Recipe("soccer"), number, tmp_path, 1).recipe
+        seeds += [recipe.seed + step for step in range(len(recipe.rounds) + len(recipe.calibration))]
+    assert len(set(seeds)) == len(seeds) > 5
+    assert replicas.FIRST_SEED < min(seeds) < max(seeds) < learning_curves.FIRST_RECIPE_SEED
 
 
 @pytest.mark.slow
