@@ -16,6 +16,7 @@ from tailor.tools.scenes.flat import Outline
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
 SCALE_MPS = 0.5
+LABELLED = 7  # actions in the legend; a run that fails may repeat its last one many times
 
 
 def draw_paths(tracks: list[Track], path: Path) -> None:
@@ -62,7 +63,17 @@ def draw_path(axis: Any, track: Track) -> None:
     _draw_objects(axis, track)
     draw_goals(axis, track)
     axis.set_title(f"{track.title}: {track.actual_s:.1f} s")
-    axis.legend(loc="best", fontsize="small")
+    _draw_legend(axis)
+
+
+def _draw_legend(axis: Any) -> None:
+    """The first actions' colours, below the axis: a run may fill all of it."""
+    handles, labels = axis.get_legend_handles_labels()
+    if len(labels) > LABELLED + 1:
+        (rest,) = axis.plot([], [], linestyle="none")
+        handles, labels = [*handles[:LABELLED], rest], [*labels[:LABELLED], f"and {len(labels) - LABELLED} more"]
+    if labels:
+        axis.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")
 
 
 def across(point: TrackPoint) -> list[tuple[float, float]]:

@@ -126,7 +126,8 @@ def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
     for variant, title in zip(COMPARED, ("without assertion", "with the subgoal"), strict=True):
         traced, _ = trace_run(task, variant, seed)
         contacts = traced.outcome.costs.contacts
-        result = "succeeded" if succeeded(traced.outcome) else f"failed, {contacts} contacts"
+        touched = f"{contacts} contact" if contacts == 1 else f"{contacts} contacts"
+        result = "succeeded" if succeeded(traced.outcome) else f"failed, {touched}"
         tracks.append(replace(traced.track, title=f"{title} ({result})"))
     draw_subgoal_map(ground, "approachBall", tracks, f"start {seed}", path)
     return path
