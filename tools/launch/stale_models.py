@@ -37,5 +37,5 @@ def stale_models_warning(domain: str, zoo: str) -> str:
         return ""
     return (
         f"models of {', '.join(stale)} were learned with another {abbreviated(files, NAMED)}: "
-        f"`tailor models check {robot}` tells whether they are stale"
+        f"`tailor models check {robot}` states whether they are stale"
     )

@@ -114,7 +114,7 @@ def test_a_launch_warns_in_one_line(card, altered, tmp_path: Path, monkeypatch) 
     (folder / "energy.card.json").write_text("{}")
     assert stale_models_warning("arm", str(tmp_path)) == (
         f"models of reach were learned with another {REACH}: "
-        "`tailor models check powercube` tells whether they are stale"
+        "`tailor models check powercube` states whether they are stale"
     )
     (folder / "duration.card.json").write_text(json.dumps({**shipped, "episodes": {"count": 16}}))
     assert stale_models_warning("arm", str(tmp_path)) == ""
