@@ -150,9 +150,16 @@ def _call(name: str, rest: Sequence[str]) -> int:
     module = importlib.import_module(COMMANDS[name][0])
     parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
-    parsed = parser.parse_args(rest)
+    parsed = _parsed(parser, rest)
     require(*NEEDS.get(name, ()))
     return int(module.run(parsed))
+
+
+def _parsed(parser: argparse.ArgumentParser, rest: Sequence[str]) -> argparse.Namespace:
+    parsed, left = parser.parse_known_args(rest)
+    if left and not any(word.startswith("-") for word in left):  # names that flags separate from the first ones
+        return parser.parse_intermixed_args(rest)
+    return parser.parse_args(rest) if left else parsed
 
 
 class _Parser(argparse.ArgumentParser):

@@ -48,6 +48,25 @@ def test_what_was_probably_meant_is_asked_for(capsys, words, meant):
     assert f", did you mean {meant}? (see tailor" in capsys.readouterr().err
 
 
+def test_names_may_follow_flags(capsys):
+    assert main(["models", "list", "--zoo", str(ROOT / "models/zoo"), "powercube", "--json"]) == 0
+    printed = capsys.readouterr().out
+    assert ("powercube" in printed, "agilo" in printed) == (True, False)
+
+
+def test_a_name_too_many_is_refused_after_flags_too(capsys):
+    assert main(["plan", "a", "--json", "b", "c"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert main(["goal", "(a)", "--json", "(b)"]) == 2
+    assert "unrecognized arguments: (b)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("command", "required"), [("gather", "robot"), ("train", "robot"), ("models", "verb")])
+def test_names_that_may_be_left_out_are_not_required(capsys, command, required):
+    assert main([command]) == 2
+    assert f"required: {required} (see" in capsys.readouterr().err
+
+
 def complete(line, folder):
     """Completions of the last word by bash."""
     (folder / "script").write_text(completion_script("bash"))

@@ -47,7 +47,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
     parser.add_argument("robot", help="name of the robot, e.g. agilo")
-    parser.add_argument("actions", nargs="*", metavar="ACTION", help="actions to run (default: all that have a model)")
+    parser.add_argument(
+        "actions", nargs="*", default=[], metavar="ACTION", help="actions to run (default: all that have a model)"
+    )
     count, seed = at_least(1, "--episodes"), at_least(0, "--seed")
     parser.add_argument("--episodes", type=count, help="number per action (default: %(default)s)")
     parser.add_argument("--jobs", type=processes, help="number of processes (default: %(default)s)")

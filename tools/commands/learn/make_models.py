@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
     add = parser.add_argument
-    add("robots", nargs="*", metavar="ROBOT", help="robots (default: all that have a recipe)")
+    add("robots", nargs="*", default=[], metavar="ROBOT", help="robots (default: all that have a recipe)")
     add("--recipe", type=Path, metavar="FILE", help="recipe (default: that of the robot's package)")
     add("--zoo", type=Path, metavar="DIR", help="folder to write models to (default: that of the robot's package)")
     add("--work", type=Path, default=Path("out/make-models"), help="folder of episodes (default: %(default)s)")

@@ -58,7 +58,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     checks = "run all checks (exit code 1 if any fails)"
     verbs = f"one line per model; its card; its rules; pictures; {checks}; share; get and check"
     parser.add_argument("verb", choices=VERBS, help=verbs)
-    parser.add_argument("models", nargs="*", metavar="MODEL", help="models (default: all)")
+    parser.add_argument("models", nargs="*", default=[], metavar="MODEL", help="models (default: all)")
     parser.add_argument("--zoo", type=Path, help="folder of models (default: the one of the robot)")
     data = "plot, rules: folder with data sets (default: data/ROBOT); push, pull: data sets there instead of models"
     parser.add_argument("--data", type=Path, metavar="DIR", help=data)

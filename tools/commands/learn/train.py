@@ -49,7 +49,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     add = parser.add_argument
     add("robot", help="name of the robot, as in the manifests of the data sets")
-    add("actions", nargs="*", metavar="ACTION", help="actions to train (default: all data sets)")
+    add("actions", nargs="*", default=[], metavar="ACTION", help="actions to train (default: all data sets)")
     add("--data", type=Path, nargs="+", default=[], help="folders with a data set per action (default: data/ROBOT)")
     add(
         "--zoo",
