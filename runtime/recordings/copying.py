@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, Writer
 
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.runtime.recordings.mcap.writer import CHUNK_BYTES
-from tailor.schemas.errors import UsageError
+from tailor.runtime.recordings.new_file import new_file
 
 MAX_CHANNELS = 65_535  # their numbers have 16 bits
 Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
@@ -80,21 +80,16 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
       note: Entries of the metadata record "copy".
 
     Raises:
-      UsageError: The source is missing or no MCAP file, or the target exists or cannot be written.
+      UsageError: The source is missing or no MCAP file, or the target exists or cannot be written and is removed.
     """
     copied = CopyResult()
     next(scan(source, DamageReport(), with_chunks=False), None)  # checks the source before the target is created
-    try:
-        with target.open("xb") as file:
-            writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-            writer.start(profile="ros2", library="tailor")
-            _copy_records(source, _Copy(writer), keep, copied)
-            writer.add_metadata("copy", {"of": source.name, "damage": copied.damage.text(), **note})
-            writer.finish()
-    except FileExistsError as error:
-        raise UsageError(f"{target}: exists already, expected the name of a new file") from error
-    except OSError as error:
-        raise UsageError(f"{target}: {error.strerror}") from error
+    with new_file(target), target.open("xb") as file:
+        writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        writer.start(profile="ros2", library="tailor")
+        _copy_records(source, _Copy(writer), keep, copied)
+        writer.add_metadata("copy", {"of": source.name, "damage": copied.damage.text(), **note})
+        writer.finish()
     return copied
 
 

@@ -10,7 +10,8 @@ from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
-from tailor.runtime.recordings.recording import Recorded, open_recording
+from tailor.runtime.recordings.new_file import new_file
+from tailor.runtime.recordings.recording import Recorded, Recording, open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import FrameTransforms, LogLine, Message, SceneShapes
@@ -29,16 +30,25 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport
       Number of messages added, the feed that made them, and the damage of the source, which the copy's metadata states.
 
     Raises:
-      UsageError: The source is no recording, or the target exists or cannot be written.
+      UsageError: The source is no recording, or the target exists or cannot be written and is removed.
     """
-    recording, feed, sequences = open_recording(source), SceneFeed(), Counter[str]()
+    recording, feed, added = open_recording(source), SceneFeed(), Counter[str]()
     metadata = {name: entries for name, entries in recording.metadata() if name != "topics"}
-    try:
+    with new_file(target):
         writer = McapWriter(target, metadata)
-    except FileExistsError as error:
-        raise UsageError(f"{target}: exists already, expected the name of a new file") from error
-    except OSError as error:
-        raise UsageError(f"{target}: {error.strerror}, expected a writable path") from error
+        try:
+            _write(writer, recording, feed, added)
+            if text := recording.damage.text():
+                writer.add_metadata("copy", {"of": source.name, "damage": text})
+        finally:
+            whole = writer.close()
+        if not whole:
+            raise UsageError(f"{target}: {writer.disk_error}")
+    return added.total(), feed, recording.damage
+
+
+def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Counter[str]) -> None:
+    """Copy the messages and add those of the feed; `added` counts the latter by key."""
     for recorded in recording.messages():
         if recorded.ros_type in DERIVED:
             continue
@@ -47,15 +57,10 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport
         made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if message is not None else []
         for topic, each in made:
             key = key_of(topic, feed.robot)
-            sequences[key] += 1
-            origin = pack(Origin(sequences[key], recorded.log_ns, SENDER))
+            added[key] += 1
+            origin = pack(Origin(added[key], recorded.log_ns, SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
             writer.write(raw, recorded.log_ns)
-    if text := recording.damage.text():
-        writer.add_metadata("copy", {"of": source.name, "damage": text})
-    if not writer.close():
-        raise UsageError(f"{target}: {writer.disk_error}")
-    return sequences.total(), feed, recording.damage
 
 
 def _raw(recorded: Recorded) -> Raw:

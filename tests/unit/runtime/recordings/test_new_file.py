@@ -1,0 +1,65 @@
+"""Files that tools make from recordings are whole or absent, so that a second attempt finds their name free."""
+
+import errno
+
+import pytest
+
+from tailor.runtime.recordings.copying import copy
+from tailor.runtime.recordings.mcap import sink
+from tailor.runtime.recordings.recording import open_recording
+from tailor.schemas.errors import UsageError
+from tailor.tools.scenes.recorded_scenes import add_scenes
+from tests.unit.runtime.recordings.test_mcap_writer import write_tape
+
+
+@pytest.fixture
+def tape(tmp_path):
+    return write_tape(tmp_path / "a.mcap")
+
+
+@pytest.mark.parametrize(
+    ("failure", "reported"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device"), UsageError),
+        (UsageError("damage"), UsageError),
+        (KeyboardInterrupt(), KeyboardInterrupt),
+    ],
+)
+def test_a_copy_that_fails_halfway_leaves_no_file_and_can_be_repeated(tape, tmp_path, failure, reported):
+    target, kept = tmp_path / "b.mcap", iter([True] * 20)
+
+    def keep(*_):
+        if next(kept, None) is None:
+            raise failure
+        return True
+
+    with pytest.raises(reported):
+        copy(tape, target, keep, {})
+    assert not target.exists()
+    assert copy(tape, target, lambda *_: True, {}).kept == 50
+
+
+@pytest.mark.parametrize("make", [add_scenes, lambda source, target: copy(source, target, lambda *_: True, {})])
+def test_a_file_that_existed_before_stays_as_it_is(tape, tmp_path, make):
+    target = tmp_path / "b.mcap"
+    target.write_text("mine")
+    with pytest.raises(UsageError, match="exists already"):
+        make(tape, target)
+    assert target.read_text() == "mine"
+    with pytest.raises(UsageError, match="No such file or directory"):
+        make(tape, tmp_path / "absent" / "b.mcap")
+
+
+def test_a_copy_with_scenes_on_a_full_disk_leaves_no_file(tape, tmp_path, monkeypatch):
+    target = tmp_path / "b.mcap"
+
+    def full(file, data):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(sink.os, "write", full)
+        with pytest.raises(UsageError, match="No space left"):
+            add_scenes(tape, target)
+    assert not target.exists()
+    add_scenes(tape, target)
+    assert len(list(open_recording(target).messages())) == 50
