@@ -61,6 +61,8 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
             origin = pack(Origin(added[key], recorded.log_ns, SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
             writer.write(raw, recorded.log_ns)
+        if writer.is_full and not writer.flush():
+            raise UsageError(f"{writer.path}: {writer.disk_error}")
 
 
 def _raw(recorded: Recorded) -> Raw:

@@ -5,7 +5,7 @@ import errno
 import pytest
 
 from tailor.runtime.recordings.copying import copy
-from tailor.runtime.recordings.mcap import sink
+from tailor.runtime.recordings.mcap import sink, writer
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import UsageError
 from tailor.tools.scenes.recorded_scenes import add_scenes
@@ -63,3 +63,13 @@ def test_a_copy_with_scenes_on_a_full_disk_leaves_no_file(tape, tmp_path, monkey
     assert not target.exists()
     add_scenes(tape, target)
     assert len(list(open_recording(target).messages())) == 50
+
+
+def test_a_copy_with_scenes_waits_on_the_disk_instead_of_in_memory(tape, tmp_path, monkeypatch):
+    monkeypatch.setattr(writer, "STUCK_BYTES", 2000)
+    flushes, flush = [], writer.McapWriter.flush
+    monkeypatch.setattr(writer.McapWriter, "flush", lambda self: flushes.append(1) or flush(self))
+    monkeypatch.setattr(writer, "CHUNK_BYTES", 500)
+    add_scenes(tape, tmp_path / "b.mcap")
+    assert flushes
+    assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 50
