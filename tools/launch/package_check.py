@@ -73,8 +73,8 @@ def _faults_of_pddl(domain: Domain) -> Iterator[str]:
     except planning.PddlError as error:
         yield f"pddl: {error}"
         return
-    yield from (f"executables: no action of the PDDL is '{name}'" for name in set(domain.executables) - set(schemas))
-    yield from (f"executables: '{name}' of the PDDL is missing" for name in set(schemas) - set(domain.executables))
+    yield from (f"executables: no action of the PDDL is '{name}'" for name in domain.executables if name not in schemas)
+    yield from (f"executables: '{name}' of the PDDL is missing" for name in schemas if name not in domain.executables)
     for symbolic, executable in domain.executables.items():
         if executable not in domain.actions:
             yield f"executables['{symbolic}'] is '{executable}', which is none of actions"

@@ -58,6 +58,12 @@ def test_each_fault_of_a_domain_is_named(fault):
     assert all(each.startswith(("tailor.executive.domains.soccer:make: ", "tailor.simnodes.agilo:")) for each in found)
 
 
+def test_faults_come_in_the_order_of_the_package():
+    unknown = [f"fly{number}" for number in range(9)]
+    found = faults_of_package(spec_of("soccer"), soccer(executables=dict.fromkeys(unknown, "goToPose")))
+    assert [each.rsplit("'")[-2] for each in found if "no action of the PDDL" in each] == unknown
+
+
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
