@@ -5,14 +5,11 @@ from __future__ import annotations
 import argparse
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.planning.options import MAX_PLANS
+from tailor.tools.planning import options
 
 _SEARCH = {"--lifted": "ground", "-h": "heuristic", "-f": "orders", "-s": "search", "-w": "weight",
            "-a": "action_cost", "-r": "random_open_conditions"}  # fmt: skip
 _ALL = {**_SEARCH, "-l": "node_limit", "-S": "seed", "--memory-limit": "memory_limit", "--anytime": "anytime"}
-_DEFAULTS = {"ground": True, "heuristic": "", "orders": [], "search": "A", "weight": 1.0, "action_cost": "UNIT",
-             "random_open_conditions": False, "node_limit": MAX_PLANS, "seed": 0, "memory_limit": 512,
-             "anytime": False, "tolerance": 0.01, "engine": "auto"}  # fmt: skip
 
 
 def refuse_ignored(args: argparse.Namespace) -> None:
@@ -27,7 +24,11 @@ def refuse_ignored(args: argparse.Namespace) -> None:
         _refuse(args, "--engine forward", _SEARCH)
 
 
-def _refuse(args: argparse.Namespace, planner: str, options: dict[str, str]) -> None:
-    given = [option for option, name in options.items() if getattr(args, name) != _DEFAULTS[name]]
+def _refuse(args: argparse.Namespace, planner: str, names: dict[str, str]) -> None:
+    """Refuse the options, option -> name of its value, whose values are not those of an empty command line."""
+    parser = argparse.ArgumentParser()
+    options.configure(parser)
+    defaults = parser.parse_args([])
+    given = [option for option, name in names.items() if getattr(args, name) != getattr(defaults, name)]
     if given:
         raise UsageError(f"{planner} does not use {', '.join(given)}: leave {'it' if len(given) == 1 else 'them'} out")
