@@ -271,7 +271,7 @@ def subgoals_have_places(subject):
 
 
 def subgoal_faults(subject):
-    return list(faults(CLAUSES["subgoals_have_places"], subject, subject.scenarios[0]))
+    return list(faults(CLAUSES["subgoals_have_places"], subject, ""))
 
 
 def test_a_subgoal_without_a_quantity_in_metres_need_not_be_drawn(subject):

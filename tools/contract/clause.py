@@ -20,7 +20,7 @@ class Clause:
       name: Its name in the tests' ids.
       scope: What it is checked for: once, for each action or for each scenario.
       text: What a package must keep to.
-      needs: Part of the package without which it is skipped: "body", "sampler" or nothing.
+      needs: Part of the package without which it is skipped: "body", "sampler", "scene" or nothing.
       check: Yields the faults of a subject in one case: the name of an action or of a scenario, "" otherwise.
     """
 

@@ -49,7 +49,7 @@ def belief_is_drawn_where_the_truth_is(subject: Subject, case: str) -> Iterator[
         yield f"the belief is drawn {apart_m:.1f} m from the truth"
 
 
-@clause("scenario", needs="scene")
+@clause("package", needs="scene")
 def subgoals_have_places(subject: Subject, case: str) -> Iterator[str]:
     """A subgoal with values for all quantities of an action's last label is drawn somewhere, if one is in metres."""
     view = subject.scene
