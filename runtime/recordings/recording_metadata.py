@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
+from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.bus.inbox import Raw
 from tailor.schemas.codec import decode
+from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Provenance
 from tailor.schemas.topics import TOPICS
 
@@ -39,5 +41,6 @@ class RecordingMetadata:
         message = decode(Provenance, raw.payload)
         if not isinstance(message, Provenance):
             return False
-        sender = raw.attachment[17:].hex() if raw.attachment else ""
+        origin = unpack(raw.attachment)
+        sender = "" if isinstance(origin, Rejected) else origin.sender
         return self.put("provenance", {"sender": sender, "json": message.json})
