@@ -31,7 +31,7 @@ class SnapshotBuffer:
         """Append a message received at `wall_ns` and drop the oldest ones; `now_ns` is monotonic."""
         self._messages.append((raw, wall_ns, now_ns))
         self._bytes += memory_of(raw)
-        while self._messages[0][2] < now_ns - self._span_ns or self._bytes > self._max_bytes:
+        while self._messages and (self._messages[0][2] < now_ns - self._span_ns or self._bytes > self._max_bytes):
             self._bytes -= memory_of(self._messages.popleft()[0])
 
     @property

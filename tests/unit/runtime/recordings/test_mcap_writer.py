@@ -387,6 +387,12 @@ def test_a_snapshot_buffer_is_bounded_in_bytes_too(tmp_path):
     assert buffer.write(tmp_path / "ring.mcap", {}) == 10
 
 
+def test_a_snapshot_buffer_drops_a_message_that_alone_is_too_large():
+    buffer = SnapshotBuffer(S, max_bytes=memory_of(odometry(1)) - 1)
+    buffer.add(odometry(1), S, S)
+    assert buffer.is_empty
+
+
 def test_a_snapshot_of_nothing_is_refused(tmp_path):
     queue = IngestQueue()
     recorder = SnapshotRecorder(
