@@ -7,6 +7,7 @@ from collections.abc import Callable
 from tailor.runtime.bus.attachment import unpack
 from tailor.runtime.bus.encoding import named_type
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
@@ -30,6 +31,13 @@ def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Noti
       notifier: Receives that it subscribes, a report of every look, and a package's fault.
     """
     queue, subscription = session.subscribe_all("**")
+    try:
+        _publish(session, queue, stopped, notifier)
+    finally:
+        subscription.undeclare()
+
+
+def _publish(session: Session, queue: IngestQueue, stopped: Callable[[], bool], notifier: Notifier) -> None:
     loop, feed, publishers, fault = Loop(POLL_NS, MonotonicClock()), SceneFeed(), dict[str, Publisher](), ""
     notifier.ready()
     while not stopped():
@@ -46,7 +54,6 @@ def publish_scenes(session: Session, stopped: Callable[[], bool], notifier: Noti
         if feed.fault != fault:
             fault = feed.fault
             notifier.status(f"scene: {fault}")
-    subscription.undeclare()
 
 
 def _read(raw: Raw) -> Message | None:
