@@ -83,8 +83,8 @@ class LiveRun:
     def _listen(self, sessions: ExitStack, run: BusRun) -> None:
         """Follow the bus until a stop is requested or new sessions are due."""
         arguments, session, clock = self._arguments, run.session, MonotonicClock()
-        intake, subscribe_all = session.subscribe_all("**")
-        sessions.callback(subscribe_all.undeclare)
+        intake, subscription = session.subscribe_all("**")
+        sessions.callback(subscription.undeclare)
         explainer = None if arguments.no_models else Explainer()
         timeline, now_ns = RunTimeline(explainer, arguments.robot), clock.now_ns()
         listener = BusListener(
