@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
@@ -11,6 +12,7 @@ from tailor.runtime.clock import Clock
 from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.recording import Recorded
 
+MAX_LATENESSES = 100_000  # of the newest messages: a repeated playback has no end
 SLICE_NS = 20_000_000  # longest sleep between two polls of the keyboard
 
 
@@ -20,7 +22,7 @@ class PlaybackStats:
 
     messages: int = 0
     bytes: int = 0
-    lateness_ns: list[int] = field(default_factory=list)  # of every message that had a due time
+    lateness_ns: deque[int] = field(default_factory=lambda: deque(maxlen=MAX_LATENESSES))  # of those with a due time
 
 
 class Player:
