@@ -2,7 +2,10 @@
 
 import pytest
 
+from tailor.schemas.messages import ExecStatus
+from tailor.tools.commands.run import letters
 from tailor.tools.main import main
+from tailor.tools.writing.writing_track import writing_track
 
 
 def test_a_letter_is_written_tabulated_and_drawn(tmp_path, capsys):
@@ -10,6 +13,20 @@ def test_a_letter_is_written_tabulated_and_drawn(tmp_path, capsys):
     output = capsys.readouterr().out
     assert all(hand in output for hand in ("stopping", "greedy", "refined"))
     assert {path.name for path in tmp_path.iterdir()} == {"I-joints.png", "I-page.png"}
+
+
+def test_a_run_that_reaches_no_waypoint_is_named_instead_of_drawn(tmp_path, capsys, monkeypatch):
+    def nothing(text, modes, seed):
+        failed = ExecStatus(1, 1, "READY", "", "word-I", "", "failed", "", 0, 0.0, 0.0)
+        return [writing_track(mode.name, text, [failed]) for mode in modes]
+
+    monkeypatch.setattr(letters, "_in_lockstep", nothing)
+    assert main(["letters", "i", "--lockstep", "--output", str(tmp_path)]) == 1
+    assert capsys.readouterr().err.splitlines() == [
+        "stopping: no waypoint was reached: failed",
+        "refined: no waypoint was reached: failed",
+    ]
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("text", ["", "TAILOR!", "Ä", "ABCDEFGHIJKLM"])

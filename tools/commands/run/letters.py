@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -64,6 +65,10 @@ def run(arguments: argparse.Namespace) -> int:
     tracks = _in_lockstep(text, modes, arguments.seed) if lockstep else _live(text, modes, arguments)
     if len(tracks) < len(modes):
         return 130
+    if nothing := [track for track in tracks if not track.duration_s]:
+        print(*(f"{each.title}: no waypoint was reached: {each.result or 'stopped'}" for each in nothing), sep="\n",
+              file=sys.stderr)  # fmt: skip
+        return 1
     pictures = _draw(tracks, arguments.output)
     if arguments.json:
         print(json.dumps([_row(track) for track in tracks]))
