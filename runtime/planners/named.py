@@ -15,6 +15,7 @@ from tailor.schemas.errors import UsageError
 
 KAIROS, UNIFIED = "kairos", "up"
 MIN_LIMIT_S = 0.001
+CHECK_S = 30.0  # for importing unified-planning and an engine of it; takes about a second
 # plans refined by the built-in search before kairos-planner plans, 0.05 to 0.1 s: short problems keep their plans
 DURATIVE_HEAD_START = 250
 
@@ -61,12 +62,17 @@ def check_engine(command: str) -> None:
     A process of its own looks, for a second: unified-planning and its engines are not imported here.
 
     Raises:
-      UsageError: There is no such engine, or it is no planner, or unified-planning cannot be imported.
+      UsageError: There is no such engine, or it is no planner, or unified-planning cannot be imported in time.
     """
     words = named_planner(command) if command.strip().startswith(f"{UNIFIED}:") else None
     if words is None:
         return
-    looked = subprocess.run(words, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    try:
+        looked = subprocess.run(
+            words, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, timeout=CHECK_S
+        )
+    except subprocess.TimeoutExpired as error:
+        raise UsageError(f"planner '{command}': not loaded within {CHECK_S:g} s") from error
     if looked.returncode == 0:
         return
     reason = looked.stdout.strip()

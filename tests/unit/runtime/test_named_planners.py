@@ -134,6 +134,14 @@ def test_a_package_that_cannot_be_imported_is_one_line_with_its_error(monkeypatc
         named.check_engine("up:x")
 
 
+def test_a_package_that_hangs_while_it_is_imported_is_refused(monkeypatch):
+    monkeypatch.setattr(named, "CHECK_S", 0.3)
+    monkeypatch.setattr(named, "find_spec", lambda name: object())
+    monkeypatch.setattr(named, "_module", lambda *_: [sys.executable, "-c", "import time; time.sleep(60)"])
+    with pytest.raises(UsageError, match="not loaded within"):
+        named.check_engine("up:x")
+
+
 def test_auto_asks_kairos_for_a_long_durative_problem_and_falls_back_to_the_search(monkeypatch, capsys):
     if not named.kairos_installed():
         pytest.skip("kairos-planner is not installed")
