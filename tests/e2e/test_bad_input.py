@@ -46,6 +46,7 @@ def refused(*arguments):
         (("arm", ""), "robot '': expected a name, e.g. agilo"),
         (("arm", "agilo#"), "robot 'agilo#': expected a name"),
         (("arm", "*"), "robot '*': expected a name"),
+        (("arm", "agilo", "--off", "--reset"), "--off disarms, which releases no emergency stop"),
         (("executive", "soccer", "--goal", "(atbal pos3)"), "atbal"),
         (("executive", "soccer", "--goal", "(atball pos3"), ":1:"),
         (("goal", "(atball pos3)"), "no router responds"),
@@ -54,6 +55,7 @@ def refused(*arguments):
         (("status", "--connect", "7447"), "expected PROTOCOL/HOST:PORT"),
         (("frobnicate",), "unknown command 'frobnicate'"),
         (("verify", "nowhere.mcap"), "nowhere.mcap"),
+        (("verify", "nowhere.mcap", "-o", "x.mcap", "--without-proofs"), "--output writes all outputs"),
         (("plan", "domain.pddl"), "domain.pddl: cannot be read: No such file or directory"),
         (
             ("plan", "domain.pddl", "problem.pddl", "-T", "nan"),

@@ -1,7 +1,7 @@
 """Feed the inputs of a recording through today's core and compare every output bit for bit.
 
-With --output, the outputs of today's core are written as a recording; `tailor compare` compares the two. Most of the
-time goes into the proofs of optimality gaps; --without-proofs omits them.
+With --output, the outputs of today's core in the file's first run are written as a recording; `tailor compare` compares
+the two. Most of the time goes into the proofs of optimality gaps; --without-proofs omits them.
 """
 
 from __future__ import annotations
@@ -35,7 +35,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick or an input of one."""
+    """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick or an input of one.
+
+    With --output, which takes the proofs along, that concerns the first run alone.
+    """
+    if arguments.output is not None and arguments.without_proofs:
+        raise UsageError("--output writes all outputs of today's core, expected it without --without-proofs")
     runs = RecordedRuns(arguments.recording)
     warn(arguments.recording, runs.damage)
     if arguments.output is None:

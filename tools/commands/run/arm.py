@@ -48,12 +48,14 @@ def run(arguments: argparse.Namespace) -> int:
     if not re.fullmatch(r"[\w-]+(/[\w-]+)*", robot, re.ASCII):
         raise UsageError(f"robot {robot!r}: expected a name, e.g. agilo")
     checked_sender(arguments.sender, "--sender")
+    if arguments.off and arguments.reset:
+        raise UsageError("--off disarms, which releases no emergency stop: expected it without --reset")
     with open_bus(arguments, "people") as session:
         sender = arguments.sender or ("" if arguments.off else _executive_sender(session))
         if not sender and not arguments.off:
             _print(arguments, robot, "no executive", "no executive is running, expected one or --sender", None)
             return 1
-        request = ArmRequest(not arguments.off, arguments.reset and not arguments.off, sender, 0)
+        request = ArmRequest(not arguments.off, arguments.reset, sender, 0)
         outcome, exchange = _exchange(session, robot, request)
     state = _text(robot, exchange.state)
     text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot)
