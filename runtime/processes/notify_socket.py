@@ -32,12 +32,16 @@ class NotifySocket:
     """Socket of one child, in a folder that only this user can open."""
 
     def __init__(self, path: Path) -> None:
-        """Create and bind the socket; `path` is new and at most 107 bytes long."""
+        """Create and bind the socket; `path` is new and at most 107 bytes long, otherwise OSError is raised."""
         self.path = path
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
-        self._socket.bind(str(path))
+        try:
+            self._socket.bind(str(path))
+        except OSError:
+            self._socket.close()
+            raise
 
     def poll(self, pid: int) -> Report:
         """What process `pid` reported since the last poll; never blocks. Other processes' reports are dropped."""

@@ -99,3 +99,11 @@ def test_a_flood_of_reports_does_not_keep_the_supervisor(receiver, monkeypatch):
     notifier.ready()
     assert receiver.poll(os.getpid()) == Report(alive=True)
     assert receiver.poll(os.getpid()) == Report(ready=True)
+
+
+def test_a_socket_that_cannot_be_bound_leaves_no_descriptor_open(tmp_path):
+    before = os.listdir("/proc/self/fd")
+    with pytest.raises(OSError, match="AF_UNIX path too long") as raised:
+        NotifySocket(tmp_path / ("x" * 120))
+    assert os.listdir("/proc/self/fd") == before
+    del raised  # until here it keeps the socket from being collected
