@@ -4,18 +4,9 @@ from __future__ import annotations
 
 from tailor.executive.planning import GOAL, Plan
 from tailor.executive.planning.pddl.formula_text import format_atom
+from tailor.tools.viewer.bare_orderings import bare_orderings
 
 _START = 0
-
-
-def bare_orderings(plan: Plan) -> list[tuple[int, int]]:
-    """The orderings that neither a causal link nor two other orderings imply."""
-    pairs = set(plan.orderings)
-    linked = {(link.producer, link.consumer) for link in plan.links}
-    steps = [step.id for step in plan.steps]
-    return sorted(
-        (i, j) for i, j in pairs if (i, j) not in linked and not any((i, k) in pairs and (k, j) in pairs for k in steps)
-    )
 
 
 def _links(plan: Plan) -> dict[tuple[int, int], list[str]]:

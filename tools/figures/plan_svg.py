@@ -11,7 +11,7 @@ from html import escape
 
 from tailor.executive.planning import GOAL, Plan
 from tailor.executive.planning.pddl.formula_text import format_atom, format_number
-from tailor.tools.figures.plan_drawing import bare_orderings
+from tailor.tools.viewer.bare_orderings import bare_orderings
 
 START = 0
 _TITLE, _LINE = 7.2, 5.6  # pixels a character at 12 and 10 pixels, wide fonts included

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tailor.executive import planning
 from tailor.schemas.messages import PlanReport
 from tailor.schemas.reason_text import reason_text
+from tailor.tools.viewer.bare_orderings import bare_orderings
 from tailor.tools.viewer.event_fields import Fields
 
 
@@ -29,25 +30,13 @@ def plan_graph(message: PlanReport) -> Fields:
 
 def _graph(plan: planning.Plan) -> Fields:
     links = [{"from": link.producer, "literal": str(link.literal), "to": _node(link.consumer)} for link in plan.links]
-    linked = {(link["from"], link["to"]) for link in links}
-    orderings = [[before, after] for before, after in _reduced(plan.orderings) if (before, after) not in linked]
     return {
         "initial": [" ".join(fact) for fact in plan.initial],
         "steps": [{"id": step.id, "words": list(step.action)} for step in plan.steps],
         "links": links,
-        "orderings": orderings,
+        "orderings": [list(ordering) for ordering in bare_orderings(plan)],
     }
 
 
 def _node(consumer: int) -> int | str:
     return "goal" if consumer == planning.GOAL else consumer
-
-
-def _reduced(orderings: tuple[tuple[int, int], ...]) -> list[tuple[int, int]]:
-    """Transitive reduction of closed orderings: i < j without a k between them."""
-    after: dict[int, set[int]] = {}
-    for i, j in orderings:
-        after.setdefault(i, set()).add(j)
-    return sorted(
-        (i, j) for i, later in after.items() for j in later - set().union(*(after.get(k, set()) for k in later))
-    )
