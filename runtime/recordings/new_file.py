@@ -8,6 +8,8 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 
+EXISTS = "{}: exists already, expected the name of a new file"
+
 
 @contextmanager
 def new_file(path: Path) -> Iterator[None]:
@@ -16,10 +18,12 @@ def new_file(path: Path) -> Iterator[None]:
     Raises:
       UsageError: The file existed before, which leaves it as it is, or cannot be written.
     """
+    if path.exists():  # before anything can fail, or what fails would remove a file of the user's
+        raise UsageError(EXISTS.format(path))
     try:
         yield
     except FileExistsError as error:
-        raise UsageError(f"{path}: exists already, expected the name of a new file") from error
+        raise UsageError(EXISTS.format(path)) from error
     except BaseException as error:
         with suppress(OSError):
             path.unlink()

@@ -6,6 +6,7 @@ import pytest
 
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.mcap import sink, writer
+from tailor.runtime.recordings.new_file import new_file
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import UsageError
 from tailor.tools.scenes.recorded_scenes import add_scenes
@@ -48,6 +49,14 @@ def test_a_file_that_existed_before_stays_as_it_is(tape, tmp_path, make):
     assert target.read_text() == "mine"
     with pytest.raises(UsageError, match="No such file or directory"):
         make(tape, tmp_path / "absent" / "b.mcap")
+
+
+def test_an_interrupt_before_the_file_is_opened_removes_no_file_of_before(tmp_path):
+    target = tmp_path / "b.mcap"
+    target.write_text("mine")
+    with pytest.raises(UsageError, match="exists already"), new_file(target):
+        raise KeyboardInterrupt
+    assert target.read_text() == "mine"
 
 
 def test_a_copy_with_scenes_on_a_full_disk_leaves_no_file(tape, tmp_path, monkeypatch):
