@@ -11,8 +11,8 @@ import pytest
 from tailor.schemas import codec, typesystem
 from tailor.schemas.own import converters
 from tailor.schemas.packages import discovery
-from tailor.schemas.ros2 import service
-from tailor.schemas.topics import TOPICS
+from tailor.schemas.ros2 import profiles, service
+from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.new_robot.names import package_of
 from tailor.tools.new_robot.templates import write_robot
 
@@ -49,9 +49,15 @@ def _forget() -> None:
         typesystem.own_types,
         typesystem.typestore,
         typesystem._types_by_name,
+        typesystem.definition,
+        typesystem.type_hash,
+        typesystem.hash_of,
         codec._codec,
         codec._limit,
         converters,
         service.set_goal_hash,
+        key_of,
+        profiles.topic_at,
+        profiles._in_table,
     ):
         cached.cache_clear()
