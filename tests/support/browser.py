@@ -70,13 +70,16 @@ class Browser:
         self._buffer = b""
         self._number = 0
         self._session = ""
-        target = next(t for t in self.send("Target.getTargets")["targetInfos"] if t["type"] == "page")
-        self._session = self.send("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
-        self.send("Runtime.enable")
-        self.send("Log.enable")
-        self.send("Page.enable")
 
     def __enter__(self) -> Browser:
+        try:
+            target = next(t for t in self.send("Target.getTargets")["targetInfos"] if t["type"] == "page")
+            self._session = self.send("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+            for domain in ("Runtime", "Log", "Page"):
+                self.send(f"{domain}.enable")
+        except BaseException:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
