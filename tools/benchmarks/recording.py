@@ -25,6 +25,7 @@ from tailor.tools.launch.hosting import free_endpoint
 
 RATE_HZ = 400.0
 START_S = 15.0
+RUN_S = 120.0  # limit of a soccer run
 CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 
@@ -52,6 +53,7 @@ def _recorder(endpoint: str, path: Path) -> Child:
     child, deadline = Child("record", command, notify_folder=path.parent), time.monotonic() + START_S
     while not child.report().ready:
         if child.exit_code() is not None or time.monotonic() > deadline:
+            child.stop()
             raise NoMeasurement(f"no recorder after {START_S:.0f} s")
         time.sleep(0.02)
     return child
@@ -117,8 +119,8 @@ def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int
 def _soccer(table: Table, path: Path) -> None:
     """One recorded run of the whole system: its size, and the speed of its verification."""
     command = tailor("up", "soccer", "--connect", free_endpoint(), "--record", str(path), "--once")
-    with tempfile.TemporaryFile("w") as log:
-        Child("up", command, log).wait(120.0)
+    with tempfile.TemporaryFile("w") as log, stopped_in_order([Child("up", command, log)]) as (child,):
+        child.wait(RUN_S)
     try:
         messages = list(open_recording(path).messages())
     except UsageError as error:
