@@ -114,7 +114,7 @@ def _started(
     )
     try:
         kill_if_orphaned(process.pid)
-    except OSError:  # whoever is not told of it could not stop it either
+    except OSError:  # nobody could stop it after the death of this process
         process.kill()
         process.wait(KILL_S)
         raise

@@ -1,4 +1,4 @@
-"""Source of an executive by folder, for the provenance of a recording: a later replay tells whether it is the same."""
+"""Source of an executive by folder, for the provenance of a recording: a later replay compares it with its own."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from tailor.tools.cli.bus_renewal import BusRenewal
 
 
 class BusEnd:
-    """Tells a loop when to end: on request, or when its session is cut off for good. To be made before the session."""
+    """When a loop is to end: on request, or when its session is cut off for good. To be made before the session."""
 
     def __init__(self, arguments: argparse.Namespace, stop: Stop) -> None:
         """`arguments`: parsed flags of `configure_bus`; `stop`: request to end."""
@@ -25,7 +25,7 @@ class BusEnd:
         self._cut_off = False
 
     def reached(self, session: Session) -> bool:
-        """Whether the loop is to end; it asks in every period, which takes microseconds."""
+        """Whether the loop is to end; for every period, as it takes microseconds."""
         self._cut_off = self._cut_off or self._renewal.final(session, time.monotonic_ns())
         return self._stop.requested or self._cut_off
 

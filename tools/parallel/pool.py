@@ -49,7 +49,7 @@ class Processes:
 
         if jobs != 1:
             resource_tracker.ensure_running()  # starting it with the first worker, it would let interrupts through
-        warnings.filterwarnings("ignore", ".*adjusting the input task")  # an interrupted command tells what it kept
+        warnings.filterwarnings("ignore", ".*adjusting the input task")  # an interrupted command reports what it kept
         # in batches of one: a result that waits for others of its batch is lost with the process
         parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
         with _holding_interrupts():

@@ -67,7 +67,7 @@ def add(run: RecordedRun, message: Recorded) -> str:
 
 
 def _inputs(report: TickReport) -> tuple[Sized, ...]:
-    """What a tick says of its inputs, a column each."""
+    """What a tick reports of its inputs, a column each."""
     return report.input_keys, report.input_senders, report.input_sequences, report.input_arrivals_ns
 
 

@@ -109,5 +109,5 @@ def _live(arguments: argparse.Namespace) -> int:
 
 
 def _ended(run: BusRun, stop: Stop) -> Callable[[], bool]:
-    """Tells whether a stop is requested, or a session with the next run of the bus is due."""
+    """Whether a stop is requested, or a session with the next run of the bus is due."""
     return lambda: stop.requested or run.due(time.monotonic_ns())
