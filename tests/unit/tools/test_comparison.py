@@ -10,6 +10,7 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
+from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import (
     ActionFinished,
@@ -24,6 +25,7 @@ from tailor.schemas.messages.kitchen import GripperCommand
 from tailor.schemas.own import example
 from tailor.tools.main import main
 from tailor.tools.recordings.comparison import compared_run
+from tailor.tools.recordings.survey import Stream
 
 EXECUTIVE, DRIVER = "ab" * 16, "cd" * 16
 MS = 1_000_000
@@ -109,6 +111,15 @@ def test_info_summarises_a_recording(tmp_path, capsys):
     assert (info["faults"], info["driver_stops"]) == (["no"], ["agilo: r"])
     assert info["ticks"]["late_ms"] == {"p50": 10.5, "p99": 19.81, "max": 20.0}
     assert info["ticks"]["skipped_periods"] == 1
+
+
+def test_gaps_between_unsigned_messages_are_no_loss():
+    """Other recorders number the messages of all senders together."""
+    for sender, lost in ((DRIVER, 7), ("", 0)):
+        stream = Stream("odom", "nav_msgs/msg/Odometry", sender)
+        for at_ns, number in enumerate((1, 9)):
+            stream.add(Recorded("odom", "nav_msgs/msg/Odometry", sender, number, at_ns, at_ns, b""))
+        assert stream.lost == lost
 
 
 def results_of(tmp_path, capsys, *rows):
