@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -156,7 +157,9 @@ def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[st
     show(make(making), settings.json, {}, title)
     figures = _measured(making, title, settings)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(figures))
+    unfinished = path.with_suffix(f".{os.getpid()}.tmp")
+    unfinished.write_text(json.dumps(figures))
+    unfinished.replace(path)  # an interrupted write would end every later call
     return figures
 
 
