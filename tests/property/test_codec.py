@@ -18,7 +18,9 @@ from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.msg_definitions import field_types
 from tailor.schemas.numbers import MAX_NUMBER
 from tailor.schemas.own import example
+from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.ros_time import MAX_STAMP_NS
+from tailor.schemas.standard import pose_from_ros, pose_to_ros
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import message_types
 
@@ -194,6 +196,17 @@ def test_a_quaternion_that_is_no_rotation_is_refused():
     one = whole.index(np.float64(1.0).tobytes())
     whole[one : one + 8] = np.float64(0.9).tobytes()
     assert decode(m.PoseEstimate, bytes(whole)) == Rejected("orientation is not a unit quaternion")
+
+
+def test_the_heading_of_a_tilted_robot_is_its_yaw():
+    """Yaw, then pitch, then roll: localisers in three dimensions write all of them."""
+    yaw, pitch, roll = 0.7, 0.2, -0.3
+    turns = ((0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)), (0.0, math.sin(pitch / 2), 0.0, math.cos(pitch / 2)))
+    heading = Pose3(0.0, 0.0, 0.0, *turns[0]).then(Pose3(0.0, 0.0, 0.0, *turns[1]))
+    tilted = heading.then(Pose3(0.0, 0.0, 0.0, math.sin(roll / 2), 0.0, 0.0, math.cos(roll / 2)))
+    ros = pose_to_ros(m.PoseEstimate(0, 1.0, 2.0, yaw, 0.1, 0.1, 0.1))
+    ros.pose.pose.orientation = type(ros.pose.pose.orientation)(tilted.qx, tilted.qy, tilted.qz, tilted.qw)
+    assert pose_from_ros(ros).phi == pytest.approx(yaw)
 
 
 def test_a_stamp_with_more_than_a_second_of_nanoseconds_is_refused():

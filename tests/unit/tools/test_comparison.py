@@ -16,15 +16,18 @@ from tailor.schemas.messages import (
     ActionFinished,
     DriverState,
     ExecStatus,
+    InstantiatedAction,
     JointCommand,
     Odometry,
+    Parameter,
+    Subgoals,
     TickReport,
     VelocityCommand,
 )
 from tailor.schemas.messages.kitchen import GripperCommand
 from tailor.schemas.own import example
 from tailor.tools.main import main
-from tailor.tools.recordings.comparison import compared_run
+from tailor.tools.recordings.comparison import chosen, compared_run
 from tailor.tools.recordings.survey import Stream
 
 EXECUTIVE, DRIVER = "ab" * 16, "cd" * 16
@@ -120,6 +123,17 @@ def test_gaps_between_unsigned_messages_are_no_loss():
         for at_ns, number in enumerate((1, 9)):
             stream.add(Recorded("odom", "nav_msgs/msg/Odometry", sender, number, at_ns, at_ns, b""))
         assert stream.lost == lost
+
+
+def test_a_variable_that_actions_share_has_the_name_of_the_first():
+    def action(name, *parameters):
+        given = (Parameter(n, k, "label", "m", bound, 0.0, 9.0, value) for n, k, bound, value in parameters)
+        return InstantiatedAction(name, 1, False, 1.0, 0.0, tuple(given))
+
+    first = action("goToPose", ("x", 1, True, 0.0), ("xg", 2, False, 2.5))
+    second = action("dribbleBall", ("x", 2, False, 2.5), ("vg", 3, False, 0.4))
+    plan = replace(example(Subgoals), actions=(first, second))
+    assert chosen(plan) == {"goToPose.xg": 2.5, "dribbleBall.vg": 0.4}
 
 
 def results_of(tmp_path, capsys, *rows):

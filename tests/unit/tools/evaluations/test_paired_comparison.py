@@ -54,6 +54,7 @@ def test_units_with_other_shares_are_compared_as_a_whole():
     found = compare_shares(first, second, np.repeat(range(10), 4).tolist())
     assert (found.first, found.second) == (0.0, 22.5)
     assert found.ci95[0] > 0
+    assert found == compare_means(np.zeros(10), np.array([25.0] * 9 + [0.0])), "not 40 pairs: they are of ten starts"
 
 
 def test_the_interval_of_shares_covers_the_truth_as_often_as_it_promises():

@@ -51,6 +51,12 @@ def test_map_odom_and_base_link_are_one_chain_that_leads_to_the_believed_pose():
     assert frames.stamp_ns == 5
 
 
+def test_scenes_go_on_after_a_clock_that_was_set_back():
+    feed = soccer_feed()
+    names = [{name for name, _ in published(feed, (at_s, "exec/status", status()))} for at_s in (100.0, 100.01, 40.0)]
+    assert [{"scene", "transforms"} <= each for each in names] == [True, False, True]
+
+
 def test_a_robot_with_odometry_is_drawn_once_it_has_come():
     feed = SceneFeed("soccer")
     assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}

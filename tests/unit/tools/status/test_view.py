@@ -1,14 +1,16 @@
 """The drawing of a system's state, the stop key, and the part of a flood that is read."""
 
 import time
+from dataclasses import replace
 from io import StringIO
 from threading import Event, Semaphore
 
 from rich.console import Console
+from rich.style import Style
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.messages import EStop, Odometry, ProcessState, ProcessStates
-from tailor.tools.status.panel import panel
+from tailor.tools.status.panel import BAD, panel
 from tailor.tools.status.stop_key import StopKey
 from tailor.tools.status.system_model import SystemModel
 from tailor.tools.status.watcher import MAX_OF_KEY, MAX_READ, Watcher
@@ -22,6 +24,12 @@ def drawn(picture, width=120):
     console = Console(width=width, file=StringIO(), markup=False, highlight=False)
     console.print(panel(picture, ENDPOINT))
     return [line.rstrip() for line in console.file.getvalue().splitlines()]
+
+
+def marked(picture):
+    """Texts that are drawn as bad."""
+    segments = Console(width=120, file=StringIO()).render(panel(picture, ENDPOINT))
+    return {text.strip() for text, style, _ in segments if style is not None and style == Style.parse(BAD)} - {""}
 
 
 class SlowButton:
@@ -62,6 +70,21 @@ def test_problems_stand_below_the_verdict():
         "driver stopped: agilo: driver fault",
         "executive fault: repeated failure",
     ]
+
+
+def test_figures_that_are_wrong_are_marked():
+    picture = Feed().run(2.0)
+    assert marked(picture) == set()
+    (driver_view,), (odom, *others) = picture.drivers, sorted(picture.topics, key=lambda each: each.key != "agilo/odom")
+    wrong = {
+        "3": {"topics": (replace(odom, senders=3), *others)},
+        "9.5": {"topics": (replace(odom, rate_hz=9.5, slow=True), *others)},
+        "7.25": {"topics": (replace(odom, age_s=7.25, stale=True), *others)},
+        "abababab (absent)": {"drivers": (replace(driver_view, armed_for="absent"),)},
+    }
+    assert {figure: marked(replace(picture, **changes)) for figure, changes in wrong.items()} == {
+        figure: {figure} for figure in wrong
+    }
 
 
 def test_text_from_the_bus_cannot_control_the_terminal():

@@ -88,6 +88,12 @@ def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -
     assert all(timeline.events_of(9 + at, "agilo/sim/truth", SoccerGroundTruth(0, *[0.0] * 9)) for at in jitter)
 
 
+def test_samples_go_on_after_a_clock_that_was_set_back() -> None:
+    timeline = RunTimeline()
+    shown = [timeline.events_of(at_s, "agilo/odom", m.Odometry(0, 1, 0, 0, 0, 0)) for at_s in (100.0, 40.0, 40.1)]
+    assert [[event.at_s for event in events] for events in shown] == [[100.0], [40.0], [40.1]]
+
+
 def test_topics_unknown_to_the_page_become_named_numbers() -> None:
     joints = m.JointState(0, ("elbow", "wrist"), (0.25, 1.5), (0.0, 0.1), ())
     (event,) = RunTimeline().events_of(0.0, "powercube/joint_states", joints)
