@@ -72,8 +72,11 @@ def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
         body = [table(report.title, *_tabled(report.rows))]
         body += [f"<p>{html.escape(remark)}</p>" for remark in report.remarks]
         body += [image(path, description) for description, path in report.plots.items()]
+        figures, unfinished = folder / f"{report.name}.json", folder / f"{report.name}.json.tmp"
+        figures.unlink(missing_ok=True)  # of an older page, which would pass for this one
         (folder / f"{report.name}.html").write_text(page(report.title, body), encoding="utf-8")
-        (folder / f"{report.name}.json").write_text(text + "\n", encoding="utf-8")  # last: marks a complete page
+        unfinished.write_text(text + "\n", encoding="utf-8")
+        unfinished.replace(figures)  # last and at once: marks a complete page
 
 
 def _with_seeds(report: Report) -> Report:

@@ -6,12 +6,13 @@ import json
 import re
 import sys
 import types
+from pathlib import Path
 
 import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
-from tailor.tools.evaluations.pages.overview import write_overview
+from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.launch import package_check
@@ -164,6 +165,24 @@ def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
     text = write_overview(tmp_path, ["first"]).read_text()
     assert '<meta name="viewport" content="width=device-width' in text
     assert re.search(r"first, \d{4}-\d\d-\d\d \d\d:\d\d UTC", text)
+
+
+def test_a_page_that_was_interrupted_does_not_pass_for_the_one_before(tmp_path, monkeypatch):
+    made = Report("first", "The first one", [{"n": 3}], (), {}, {})
+    publish_report(made, True, tmp_path)
+    assert page_is_there(tmp_path, "first")
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    for name in ("write_text", "replace"):
+        with monkeypatch.context() as patched:
+            patched.setattr(Path, name, interrupted)
+            with pytest.raises(KeyboardInterrupt):
+                publish_report(made, True, tmp_path)
+        assert not page_is_there(tmp_path, "first")
+    publish_report(made, True, tmp_path)
+    assert page_is_there(tmp_path, "first")
 
 
 def test_json_of_a_report_has_its_rows(tmp_path, capsys):
