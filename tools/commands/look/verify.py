@@ -14,6 +14,7 @@ from typing import Any
 
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.platform_fingerprint import platform_fingerprint
+from tailor.runtime.recordings.new_file import new_file
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
 from tailor.tools.recordings.damage_notice import warn
@@ -66,15 +67,14 @@ def _verified(runs: RecordedRuns, run: RecordedRun, proofs: bool) -> Verdict:
 def _verify_and_write(path: Path, runs: RecordedRuns) -> Verdict:
     from tailor.tools.lockstep.run_writer import RunWriter  # late: it loads the live shell, and with it the bus
 
-    if path.exists():
-        raise UsageError(f"--output {path}: exists already, expected the name of a new file")
     run = runs.runs[0]
     context = rebuild_context(run.provenance)
-    writer = RunWriter(path, context, {**run.provenance, **_made_here(context.domain.name)})
-    try:
-        return verify(runs, run, context, writer)
-    finally:
-        writer.close()
+    with new_file(path):
+        writer = RunWriter(path, context, {**run.provenance, **_made_here(context.domain.name)})
+        try:
+            return verify(runs, run, context, writer)
+        finally:
+            writer.close()
 
 
 def _made_here(domain: str) -> dict[str, Any]:

@@ -9,7 +9,10 @@ from tailor.runtime.recordings.mcap import sink, writer
 from tailor.runtime.recordings.new_file import new_file
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import UsageError
+from tailor.tools.commands.look import verify
+from tailor.tools.main import main
 from tailor.tools.scenes.recorded_scenes import add_scenes
+from tests.unit.runtime.recordings.test_hostile_recordings import GOLDEN
 from tests.unit.runtime.recordings.test_mcap_writer import write_tape
 
 
@@ -82,3 +85,17 @@ def test_a_copy_with_scenes_waits_on_the_disk_instead_of_in_memory(tape, tmp_pat
     add_scenes(tape, tmp_path / "b.mcap")
     assert flushes
     assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 50
+
+
+def test_outputs_of_a_run_that_cannot_be_verified_leave_no_file(tmp_path, capsys, monkeypatch):
+    target = tmp_path / "b.mcap"
+
+    def fails(*_):
+        assert target.exists()
+        raise UsageError("tick 7 is missing")
+
+    monkeypatch.setattr(verify, "verify", fails)
+    for _ in range(2):
+        assert main(["verify", str(GOLDEN), "-o", str(target)]) == 2
+        assert "tick 7 is missing" in capsys.readouterr().err
+        assert not target.exists()
