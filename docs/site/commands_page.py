@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import re
 
 from tailor.tools.main import COMMANDS, GROUPS
 
@@ -26,15 +25,18 @@ def _section(name: str) -> str:
     parser = argparse.ArgumentParser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
     usage = parser.format_usage().removeprefix("usage: ").strip()
-    rows = [_row(action) for action in parser._actions if not isinstance(action, argparse._HelpAction)]
+    shown = [action for action in parser._actions if action.help != argparse.SUPPRESS]
+    rows = [_row(action) for action in shown if not isinstance(action, argparse._HelpAction)]
     table = "| argument | meaning |\n|---|---|\n" + "\n".join(rows) if rows else ""
     epilog = f"```text\n{parser.epilog}\n```\n" if parser.epilog else ""
     return f"### tailor {name}\n\n{(parser.description or '').strip()}\n\n```text\n{usage}\n```\n\n{table}\n\n{epilog}"
 
 
 def _row(action: argparse.Action) -> str:
-    value = action.metavar or (action.dest.upper() if action.nargs != 0 and action.option_strings else "")
-    names = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+    choices = f"{{{','.join(map(str, action.choices))}}}" if action.choices else ""
+    value = action.metavar or choices or (action.dest.upper() if action.nargs != 0 and action.option_strings else "")
+    names = ", ".join(action.option_strings) or str(action.metavar or choices or action.dest)
     shown = f"{names} {value}" if action.option_strings and value else names
     text = str(action.help or "") % {**vars(action), "prog": "tailor"} if action.help else ""
-    return f"| `{shown}` | {re.sub(r'[|]', '/', ' '.join(text.split()))} |"
+    meaning = " ".join(text.split()).replace("|", "/").replace("<", "&lt;")  # <robot> is no HTML
+    return f"| `{shown}` | {meaning} |"  # a bar in code ends no cell of this site

@@ -104,6 +104,11 @@ def test_the_generated_pages_hold_every_command_and_every_setting(monkeypatch: p
     assert "| `horizon` | `int` | `2` | actions optimised together" in page
     assert "## `[planner]`" in page
     assert "## `[executive.external]`" not in page, "read_deployment refuses it"
+    lines = [re.sub(r"`[^`]*`", "code", line) for line in f"{commands}\n{page}".splitlines() if line.startswith("|")]
+    rows = [line.split("|")[1:-1] for line in lines]
+    assert {len(row) for row in rows} == {2, 4}, "a bar ends a cell"
+    assert [row for row in rows if not row[-1].strip() or "SUPPRESS" in row[-1] or "<" in row[-1]] == []
+    assert re.search(r"`arrival_spread` .* standard deviation of the robot's arrival", page), "comments of other keys"
 
 
 @pytest.mark.slow
