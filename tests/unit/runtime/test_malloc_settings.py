@@ -1,4 +1,4 @@
-"""Few arenas for all threads: what one frees, another uses."""
+"""Few arenas for all threads: what one frees, another uses. A loop keeps the pages of what it frees."""
 
 import ctypes
 import subprocess
@@ -41,3 +41,30 @@ def test_threads_share_few_arenas():
     assert arenas("none") > 2
     assert arenas("set_for_host") == 1
     assert arenas("set_for_loop") == 2
+
+
+ARRAYS = """
+import resource, sys
+import numpy as np
+from tailor.runtime import malloc_settings
+
+if sys.argv[1] != "none":
+    getattr(malloc_settings, sys.argv[1])()
+
+def faults():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+
+for number in range(20):
+    before = faults()
+    some = [np.ones((k, 1 << 17)) for k in (7, 7, 7)]
+    del some
+print(faults() - before)
+"""
+
+
+@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "malloc_stats"), reason="the C library has no such settings")
+def test_a_loop_finds_the_pages_of_arrays_that_it_has_freed():
+    def faults(how):
+        return int(subprocess.run([sys.executable, "-c", ARRAYS, how], capture_output=True, check=True).stdout)
+
+    assert faults("set_for_loop") < 10 < faults("none"), "21 MB are 5400 pages, or 11 large ones"
