@@ -119,6 +119,9 @@ def test_a_verification_of_no_tick_has_measured_nothing(monkeypatch, tmp_path):
         def wait(self, timeout_s):
             return 0
 
+        def stop(self):
+            return 0
+
     monkeypatch.setattr(recording, "Child", Recorded)
     monkeypatch.setattr(recording.subprocess, "run", lambda *_, **__: Ended('[{"ticks": 0, "took_s": 0.1}]'))
     with pytest.raises(NoMeasurement, match="verify has compared no tick"):
@@ -131,6 +134,9 @@ def test_run_that_was_not_recorded_is_no_measurement(monkeypatch, tmp_path):
             pass
 
         def wait(self, timeout_s):
+            return 2
+
+        def stop(self):
             return 2
 
     monkeypatch.setattr(recording, "Child", Nothing)
