@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -38,6 +39,12 @@ ON_REQUEST = {
     GROWTH: "curves: how costs grow with plans, free parameters, episodes, recordings, opponents; only if named",
     CLUSTER: "simulated speed-up of gathering by 2 to 64 workers, from measured parts and overheads; only if named",
 }
+USED_BY = {  # option -> benchmarks that use it
+    "quick": (*BENCHMARKS, GROWTH, CLUSTER),
+    "scale": ("planning",),
+    "output": (SOAK, GROWTH),
+    **dict.fromkeys(("minutes", "seed", "every", "only", "json"), (SOAK,)),
+}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -64,13 +71,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Run each benchmark; 0 if all have measured something and no invariant of a soak was violated, otherwise 1.
 
     Raises:
-      UsageError: An unknown name, or a missing extra.
+      UsageError: An unknown name, an option that none of the benchmarks uses, or a missing extra.
     """
     known = (*BENCHMARKS, *ON_REQUEST)
     unknown = sorted(set(arguments.names) - set(known))
     if unknown:
         raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join(known)}")
     names = arguments.names or list(BENCHMARKS)
+    _refuse_ignored(arguments, names)
     require(*dict.fromkeys(extra for name in names for extra in BENCHMARKS_NEED.get(name, ())))
     console, code = table_console(), 0
     for name in names:
@@ -83,6 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
             passed = False
         code = code if passed else 1
     return code
+
+
+def _refuse_ignored(arguments: argparse.Namespace, names: Sequence[str]) -> None:
+    """Raises UsageError for options, other than their defaults, that none of the benchmarks `names` uses."""
+    parser = argparse.ArgumentParser()
+    configure(parser)
+    defaults = parser.parse_args([])
+    given = [option for option in USED_BY if getattr(arguments, option) != getattr(defaults, option)]
+    for option in given:
+        if not set(USED_BY[option]) & set(names):
+            raise UsageError(f"--{option}: not used by {', '.join(names)}, only by {', '.join(USED_BY[option])}")
 
 
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:

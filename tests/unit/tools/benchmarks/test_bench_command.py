@@ -57,6 +57,31 @@ def test_unknown_benchmark_is_a_usage_error(capsys):
     assert "no benchmark speed, expected some of: ticks" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(("ticks", flag, "7") for flag in ("--minutes", "--seed", "--only")),
+        *(("ticks", flag) for flag in ("--scale", "--json")),
+        ("ticks", "--every", "15"),
+        ("cluster", "models", "--output", "nowhere.json"),
+        ("soak", "--quick"),
+    ],
+    ids=" ".join,
+)
+def test_options_that_no_benchmark_of_the_call_uses_are_refused(words, capsys):
+    assert main(["bench", *words]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    (option,) = (word for word in words if word.startswith("--"))
+    assert f"{option}: not used by " in line
+
+
+def test_options_that_one_benchmark_of_the_call_uses_are_accepted(stand_ins, monkeypatch, capsys):
+    monkeypatch.setitem(bench.USED_BY, "minutes", ("full",))
+    monkeypatch.setitem(bench.USED_BY, "quick", ("full",))
+    assert main(["bench", "full", "--quick", "--minutes", "7"]) == 0
+    assert main(["bench", "--quick"]) == 1, "the other one measures nothing"
+
+
 def test_planning_without_problems_has_measured_nothing(monkeypatch, tmp_path):
     monkeypatch.setattr(planning, "DATA", tmp_path)
     with pytest.raises(NoMeasurement, match="no problems in"):
