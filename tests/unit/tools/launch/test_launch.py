@@ -1,7 +1,5 @@
 """What the launcher concludes from its children: whose messages count, and what a lost recording means."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
@@ -9,8 +7,6 @@ from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.live_status import processes_text
-from tailor.tools.launch import child_output
-from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
     LaunchConfig,
@@ -141,19 +137,3 @@ def test_the_live_status_shows_every_process():
     processes = (state("sim"), state("executive", starts=2), state("record", state="ended", status="disk: full"))
     ProcessReports(reports, Senders(), Published()).publish(processes, 0)
     assert processes_text(reports.messages[0]) == "sim running  executive running (2 starts)  record ended: disk: full"
-
-
-def test_what_children_print_is_passed_on_line_by_line_while_they_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(child_output, "MAX_BYTES", 8)
-    lines: list[str] = []
-    with (tmp_path / "printed").open("w+") as file:
-        output = ChildOutput(file, lines.append)
-        assert not output.poll()
-        for text in ("Traceback\nlast", " line\nno end"):  # as children do: through a copy of the same descriptor
-            subprocess.run([sys.executable, "-c", f"print({text!r}, end='')"], stdout=file, check=True)
-            while output.poll():
-                pass
-        assert lines == ["Traceback", "last line"]
-        output.finish()
-        output.finish()
-    assert lines == ["Traceback", "last line", "no end"]
