@@ -2,8 +2,10 @@
 
 const SOURCES = ["truth", "believed", "seen", "odom"]; // sources of the robot's pose, best first
 
-// Of a live run: what passes is kept for as long as the viewer keeps it for new pages (broadcast.py), the rest for ever.
+// Of a live run, as the viewer keeps it for new pages (broadcast.py): everything for KEEP_S; of what is older the newest
+// events of each kind, so that a page of weeks does not grow.
 const KEEP_S = 600;
+const KEEP_EVENTS = 2000;
 const FORGET_EVERY_S = 60;
 const PASSING = new Set(["tick", "belief", ...SOURCES, "why"]);
 const PASSING_STARTS = ["series ", "outline "];
@@ -53,14 +55,15 @@ class Run {
     return Object.entries(parts).map(([part, heard]) => [part, now - heard]);
   }
 
-  /** Drop old samples of a live run: a page of hours would take seconds for a frame, and so would its stop button. */
+  /** Drop old events of a live run: a page of hours would take seconds for a frame, and so would its stop button. */
   forget() {
     if (this.end < this.forgotAt + FORGET_EVERY_S) return;
     this.forgotAt = this.end;
     for (const [kind, rows] of this.kinds) {
-      if (!PASSING.has(kind) && !PASSING_STARTS.some((start) => kind.startsWith(start))) continue;
+      const passes = PASSING.has(kind) || PASSING_STARTS.some((start) => kind.startsWith(start));
+      const kept = passes ? 1 : KEEP_EVENTS; // the newest still holds, e.g. an outline
       const old = this.count(kind, this.end - KEEP_S);
-      rows.splice(0, Math.min(old, rows.length - 1)); // the newest still holds, e.g. an outline
+      rows.splice(0, Math.max(0, Math.min(old, rows.length - kept)));
     }
   }
 

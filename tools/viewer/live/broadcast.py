@@ -6,6 +6,7 @@ A new page receives the kept events first. A page that falls behind is disconnec
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from queue import Empty, Full, Queue
@@ -13,7 +14,8 @@ from threading import Lock
 
 from tailor.tools.viewer.timeline import Event, is_sample
 
-KEEP_S = 600.0  # of what passes; all other events are kept from the start. The page keeps as much (run.js)
+KEEP_S = 600.0  # of everything. The page keeps as much (run.js)
+KEEP_EVENTS = 2000  # the newest of each kind that are older, except of what passes: hours of plans, actions and states
 WHY = "why"  # kind of the alternatives of a decision: curves, a hundred times as large as the decision itself
 MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
 BEAT = "now"  # kind of an event that is not kept
@@ -117,8 +119,12 @@ class EventBroadcast:
         if now_s < self._forgot_s + 60:
             return
         self._forgot_s, oldest = now_s, now_s - self._keep_s
-        newest = {e.kind: e for e in self._events if e.kind == WHY or e.kind.startswith(OUTLINE)}
-        self._events = [e for e in self._events if e.at_s >= oldest or not _passes(e) or e is newest.get(e.kind)]
+        kept, numbers = list[Event](), Counter[str]()
+        for event in reversed(self._events):
+            numbers[event.kind] += 1
+            if event.at_s >= oldest or numbers[event.kind] <= _kept_of(event.kind):
+                kept.append(event)
+        self._events = kept[::-1]
 
 
 def encoded(events: Sequence[Event]) -> str:
@@ -126,5 +132,8 @@ def encoded(events: Sequence[Event]) -> str:
     return json.dumps([event.json_value() for event in events], allow_nan=False, separators=(",", ":"))
 
 
-def _passes(event: Event) -> bool:
-    return is_sample(event.kind) or event.kind == WHY or event.kind.startswith(OUTLINE)
+def _kept_of(kind: str) -> int:
+    """Number of events of a kind that are kept however old they are."""
+    if is_sample(kind):
+        return 0
+    return 1 if kind == WHY or kind.startswith(OUTLINE) else KEEP_EVENTS

@@ -16,6 +16,7 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
+from tailor.tools.viewer.live import broadcast as broadcast_module
 from tailor.tools.viewer.live import server
 from tailor.tools.viewer.live.broadcast import MAX_WAITING, EventBroadcast
 from tailor.tools.viewer.live.bus_listener import BusListener
@@ -83,6 +84,24 @@ def test_old_ticks_are_dropped_and_old_events_are_not() -> None:
     assert kept[0][1] == "plan"
     assert 10 <= len(kept) <= 80
     assert kept[-1][0] == 199
+
+
+def test_a_live_page_of_weeks_does_not_grow_and_a_new_one_shows_what_holds(monkeypatch) -> None:
+    monkeypatch.setattr(broadcast_module, "KEEP_EVENTS", 5)
+    broadcast = EventBroadcast(keep_s=10)
+    broadcast.publish([Event(0.0, "plan", {}), Event(0.0, "state", {}), Event(0.0, "driver", {})])
+    for k in range(1, 1000):
+        broadcast.publish([Event(float(k), "subgoals", {"k": k}), Event(float(k), "finished", {"k": k})])
+    with broadcast.subscribe() as page:
+        kept = json.loads(page.next(0))
+    assert [kind for _, kind, _ in kept[:3]] == ["plan", "state", "driver"], "in force since the start"
+    assert len(kept) <= 3 + 2 * 80
+    assert kept == sorted(kept, key=lambda row: row[0])
+    for k in range(1000, 1061):
+        broadcast.publish([tick(float(k))])
+    with broadcast.subscribe() as page:
+        kept = json.loads(page.next(0))
+    assert [fields["k"] for _, kind, fields in kept if kind == "subgoals"] == [995, 996, 997, 998, 999]
 
 
 def test_the_run_after_an_hour_drops_old_ticks_too() -> None:
