@@ -11,13 +11,14 @@ from typing import TypeVar
 
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.services import Role
 from tailor.tools.cli.endpoint import bus_settings, open_bus
 
 GONE_NS = 1_000_000_000  # without a router; zenoh reconnects to an open bus by itself before
 CHECK_NS = 200_000_000
 RETRY_S = 0.2  # while the bus is starting
+REFUSED_S = 30.0  # a bus that starts or ends refuses for seconds; one of another user, or a wrong flag, for ever
 
 Opened = TypeVar("Opened")
 
@@ -99,11 +100,21 @@ def opened_anew(sessions: ExitStack, opened: Callable[[ExitStack], Opened], ende
 
     Returns:
       What `opened` returns; None if the command is to end.
+
+    Raises:
+      UsageError: A router has refused for REFUSED_S; for one that does not respond yet it waits without a limit.
     """
+    refused_s: float | None = None  # since when
     while not ended():
         sessions.close()
         try:
             return opened(sessions)
-        except UsageError:  # the router is not ready yet, or has ended again
-            time.sleep(RETRY_S)
+        except UnreachableError:  # the router is not ready yet, or has ended again
+            refused_s = None
+        except UsageError:
+            now_s = time.monotonic()
+            refused_s = now_s if refused_s is None else refused_s
+            if now_s - refused_s >= REFUSED_S:
+                raise
+        time.sleep(RETRY_S)
     return None

@@ -11,8 +11,9 @@ import pytest
 
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.tools.cli import bus_renewal
-from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal, open_run
+from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal, open_run, opened_anew
 
 ENDPOINT = "tcp/127.0.0.1:7999"
 GONE = GONE_NS + CHECK_NS
@@ -116,3 +117,49 @@ def test_a_loop_never_knocks_at_a_bus_that_hangs(monkeypatch):
         watch, session = renewal(), Cut(connected=False)
         assert not any(watch.final(session, k * GONE) for k in range(3))
     assert knocks == []
+
+
+@dataclass
+class Wall:
+    """A clock that sleeping moves on."""
+
+    now_s: float = 0.0
+
+    def monotonic(self):
+        return self.now_s
+
+    def sleep(self, seconds):
+        self.now_s += seconds
+
+
+@pytest.fixture
+def wall(monkeypatch):
+    """The clock of the module."""
+    clock = Wall()
+    monkeypatch.setattr(bus_renewal, "time", clock)
+    return clock
+
+
+def test_a_bus_that_refuses_for_long_ends_the_command_and_one_that_starts_does_not(wall):
+    def opened(sessions):
+        if wall.now_s > 1000:
+            return "a session"
+        refused = wall.now_s % 25 < 20  # not for REFUSED_S on end
+        raise (UsageError("the bus belongs to another user") if refused else UnreachableError("no router responds"))
+
+    assert opened_anew(ExitStack(), opened, lambda: False) == "a session"
+
+    def refuses(sessions):
+        raise UsageError("the bus belongs to another user")
+
+    began_s = wall.now_s
+    with pytest.raises(UsageError, match="another user"):
+        opened_anew(ExitStack(), refuses, lambda: wall.now_s > began_s + 3600)
+    assert wall.now_s - began_s == pytest.approx(bus_renewal.REFUSED_S, abs=1.0)
+
+
+def test_a_command_that_is_to_end_waits_for_no_bus(wall):
+    def unreachable(sessions):
+        raise UnreachableError("no router responds")
+
+    assert opened_anew(ExitStack(), unreachable, lambda: wall.now_s > 3600) is None
