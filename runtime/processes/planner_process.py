@@ -161,7 +161,9 @@ class PlannerProcess:
 
 
 def split_command(command: str) -> list[str]:
-    """A planner's command or name as program and arguments; raises UsageError if it does not exist."""
+    """A planner's command or name as program and arguments; raises UsageError if there is no such program."""
+    if "\0" in command:
+        raise _cannot_start(command.replace("\0", "\\0"), "it contains a NUL")
     named = named_planner(command)
     if named is not None:
         return named

@@ -76,6 +76,14 @@ def test_a_program_that_is_gone_at_run_time_is_an_answer_too():
     assert "there is no program 'no-such-planner-anywhere'" in answer.reason
 
 
+@pytest.mark.parametrize("command", ["\0", "true a\0b", "up:pyper\0plan"])
+def test_a_command_with_a_nul_is_an_answer_too(command):
+    answer = answer_of(command)
+    assert answer.outcome == "missing"
+    assert "cannot be started: it contains a NUL" in answer.reason
+    assert "\0" not in answer.reason
+
+
 def sleeper(tmp_path):
     return program(tmp_path, "time.sleep(60)")
 
