@@ -30,7 +30,7 @@ class ExternalPlanner:
 
     def request(self, request: PlanRequest) -> None:
         """Starts a child for a request, replacing any other; a failed start is reported as an answer."""
-        self.close()
+        self._drop()
         self._request_id = request.id
         if self._starter is not None:
             arguments = (request.domain, request.problem, self._limit_s, MAX_ANSWER_BYTES)
@@ -39,7 +39,7 @@ class ExternalPlanner:
     def poll(self, request_id: int, stamp_ns: int) -> PlanAnswer | None:
         """The answer to a request, once; None while there is none. Kills a child that works on another request."""
         if request_id != self._request_id:
-            self.close()
+            self._drop()
             return None
         if self._child is None or not self._child.done():
             return None
@@ -51,10 +51,16 @@ class ExternalPlanner:
             if result is None:
                 return None
             answer = _publishable(PlanAnswer(stamp_ns, request_id, result.outcome, result.output, result.reason))
-        self.close()
+        self._drop()
         return answer
 
     def close(self) -> None:
+        """Kills the child, if any, and ends the thread without waiting for it; no request follows."""
+        self._drop()
+        if self._starter is not None:
+            self._starter.shutdown(wait=False)  # a child that is being started is still killed
+
+    def _drop(self) -> None:
         """Kills the child, if any."""
         if self._child is not None:
             self._child.add_done_callback(_kill)  # now, or as soon as it has started

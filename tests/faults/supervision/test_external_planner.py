@@ -110,6 +110,17 @@ def test_a_new_request_takes_the_place_of_the_old_one_and_closing_leaves_nothing
     assert planner.poll(2, 0) is None
 
 
+def test_closing_ends_the_thread_and_kills_a_child_that_is_being_started(tmp_path):
+    planner = ExternalPlanner(sleeper(tmp_path), 60.0)
+    (thread,) = planner._starter._threads
+    planner.request(request())
+    child = planner._child
+    planner.close()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
+    assert gone(child.result().pid)
+
+
 def test_nothing_is_started_before_there_is_a_request():
     planner = ExternalPlanner(f"{sys.executable} -c pass", 1.0)
     assert planner.poll(0, 0) is None
