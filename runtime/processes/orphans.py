@@ -25,15 +25,11 @@ class _OrphanWatch:
 
     def __init__(self) -> None:
         self._channel, theirs = socket.socketpair()
-        with theirs:
-            self._process = subprocess.Popen(
-                [sys.executable, "-I", "-S", _SCRIPT, str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,  # it may outlive this process, whose readers wait for the end of its output
-                stderr=subprocess.DEVNULL,
-                start_new_session=True,
-            )
+        try:
+            self._process = _watching(theirs)
+        except OSError:
+            self._channel.close()
+            raise
         atexit.register(self.close)
 
     def add(self, pid: int) -> None:
@@ -48,6 +44,19 @@ class _OrphanWatch:
         self._channel.close()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(END_S)
+
+
+def _watching(channel: socket.socket) -> subprocess.Popen[bytes]:
+    """The watching process, to which this end of the socket pair passes."""
+    with channel:
+        return subprocess.Popen(
+            [sys.executable, "-I", "-S", _SCRIPT, str(channel.fileno())],
+            pass_fds=[channel.fileno()],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,  # it may outlive this process, whose readers wait for the end of its output
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
 
 
 @cache

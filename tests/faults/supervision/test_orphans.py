@@ -1,5 +1,6 @@
 """A launcher killed with -9 leaves no process: what the death signal does not end is killed three seconds later."""
 
+import errno
 import os
 import random
 import signal
@@ -9,6 +10,7 @@ import time
 
 import pytest
 
+from tailor.runtime.processes import orphans
 from tailor.runtime.processes.child import STOP_S, Child, tailor
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import first_line, is_alive, wait_until
@@ -110,3 +112,14 @@ def child_of(pid, command):
 def children_of(pid):
     with open(f"/proc/{pid}/task/{pid}/children") as listed:
         return [int(word) for word in listed.read().split()]
+
+
+def test_a_watch_that_cannot_be_started_leaves_no_descriptor(monkeypatch):
+    def refused(*arguments, **options):
+        raise OSError(errno.EAGAIN, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(orphans.subprocess, "Popen", refused)
+    before = len(os.listdir("/proc/self/fd"))
+    with pytest.raises(OSError, match="temporarily unavailable") as raised:  # its traceback holds the watch
+        orphans._OrphanWatch()
+    assert len(os.listdir("/proc/self/fd")) == before, raised
