@@ -10,6 +10,7 @@ from joblib import register_parallel_backend
 from joblib.parallel import ParallelBackendBase
 
 NAME = "far"
+LIMIT_S = 300.0  # of a task; those of tests take seconds
 ROOT = Path(__file__).parents[2]
 WORKER = "import sys, pickle; sys.stdout.buffer.write(pickle.dumps(pickle.load(sys.stdin.buffer)()))"
 
@@ -47,7 +48,8 @@ class FarBackend(ParallelBackendBase):
 
 
 def _run_elsewhere(task: bytes):
-    done = subprocess.run([sys.executable, "-c", WORKER], input=task, capture_output=True, cwd=ROOT, check=True)
+    command = [sys.executable, "-c", WORKER]
+    done = subprocess.run(command, input=task, capture_output=True, cwd=ROOT, check=True, timeout=LIMIT_S)
     return pickle.loads(done.stdout)
 
 

@@ -19,7 +19,7 @@ class WallClock:
         if compiler is None:
             pytest.skip("no C compiler")
         library, self._offset = folder / "wall_clock.so", folder / "offset"
-        subprocess.run([compiler, "-shared", "-fPIC", "-o", library, SOURCE, "-ldl"], check=True)
+        subprocess.run([compiler, "-shared", "-fPIC", "-o", library, SOURCE, "-ldl"], check=True, timeout=60)
         self._offset.write_bytes(bytes(8))
         monkeypatch.setenv("LD_PRELOAD", str(library))
         monkeypatch.setenv("WALL_CLOCK_OFFSET", str(self._offset))

@@ -16,6 +16,7 @@ from tests.support.bus_system import ROOT
 
 LINKS = ("executive", "models", "robots", "runtime", "schemas", "simnodes", "tools")
 BUILD = "import sys; from setuptools import build_meta; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
+LIMIT_S = 300.0  # of a build or an installation; they take seconds
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info")
 INSTALL = ("install", "--quiet", "--no-deps", "--no-index", "--no-compile", "--disable-pip-version-check")
 
@@ -31,7 +32,8 @@ def copied_source(copy: Path) -> Path:
 
 def built(kind: str, source: Path, out: Path) -> Path:
     """The file that one of setuptools' build functions makes of a source tree."""
-    done = subprocess.run([sys.executable, "-c", BUILD, kind, out], cwd=source, capture_output=True, text=True)
+    command = [sys.executable, "-c", BUILD, kind, out]
+    done = subprocess.run(command, cwd=source, capture_output=True, text=True, timeout=LIMIT_S)
     assert done.returncode == 0, done.stderr
     return out / done.stdout.split()[-1]
 
@@ -58,7 +60,7 @@ class Environment:
 
     def install(self, *what: str | Path) -> None:
         """`pip install`."""
-        subprocess.run(self._pip(*what), check=True)
+        subprocess.run(self._pip(*what), check=True, timeout=LIMIT_S)
 
     def pip_command(self, *what: str | Path) -> str:
         """`install` as a line of a shell script."""
