@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import tempfile
 import time
 from collections.abc import Sequence
@@ -19,6 +18,7 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.errors import UsageError
+from tailor.tools.benchmarks.command_answer import answer
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.traffic import traffic
 from tailor.tools.launch.hosting import free_endpoint
@@ -105,8 +105,7 @@ def _loss(table: Table, session: Session, endpoint: str, place: Path, tries: int
 
 def _replay(table: Table, session: Session, endpoint: str, path: Path, rate: int) -> None:
     command = tailor("replay", str(path), "--rate", str(rate), "--duration", str(10 * rate), "--wait", "0", "--json")
-    output = subprocess.run([*command, "--connect", endpoint], capture_output=True, text=True, check=True).stdout
-    replayed = json.loads(output)
+    replayed, _ = answer(f"the replay at rate {rate}", [*command, "--connect", endpoint])
     if not replayed["messages"]:
         raise NoMeasurement(f"the replay at rate {rate} has published no message")
     late = replayed["lateness"]
@@ -132,13 +131,13 @@ def _soccer(table: Table, path: Path) -> None:
     for name, options in (("verify", ()), ("verify without proofs", ("--without-proofs",))):
         began = time.monotonic()
         command = tailor("verify", str(path), "--json", *options)
-        completed = subprocess.run(command, capture_output=True, text=True, check=False)
-        with_start_s, verdict = time.monotonic() - began, json.loads(completed.stdout)[0]
+        (verdict, *_), code = answer(name, command)
+        with_start_s = time.monotonic() - began
         if not verdict.get("ticks"):
-            raise NoMeasurement(f"{name} has compared no tick: {completed.stdout.strip()[:200]}")
+            raise NoMeasurement(f"{name} has compared no tick: {json.dumps(verdict)[:200]}")
         run_s = verdict["ticks"] / 10
         speeds = f"{run_s / verdict['took_s']:.0f} times real time, {run_s / with_start_s:.0f} with start-up"
-        table.add_row(f"{name}, a run of {run_s:.0f} s", f"{speeds} (exit {completed.returncode})")
+        table.add_row(f"{name}, a run of {run_s:.0f} s", f"{speeds} (exit {code})")
 
 
 def _cpu_s(pid: int) -> float:

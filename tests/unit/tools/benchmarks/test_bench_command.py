@@ -14,7 +14,7 @@ from rich.table import Table
 from tailor.executive.interfaces.models import Models
 from tailor.models.runtime import load_robot
 from tailor.runtime.recordings.recording import open_recording
-from tailor.tools.benchmarks import planning, recording, ticks
+from tailor.tools.benchmarks import command_answer, planning, recording, ticks
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.benchmarks.refinement import certificates, refine
 from tailor.tools.benchmarks.refinement.cases import cases
@@ -122,21 +122,23 @@ def test_a_system_that_hardly_ran_has_measured_nothing():
 class Ended:
     """A process that has ended; what it printed."""
 
-    def __init__(self, stdout):
-        self.stdout, self.returncode = stdout, 0
+    def __init__(self, stdout, stderr="", returncode=0):
+        self.stdout, self.stderr, self.returncode = stdout, stderr, returncode
 
 
 @pytest.mark.promise("P55")
 def test_a_replay_of_nothing_has_measured_nothing(monkeypatch):
     late = {"p50_ms": 0.0, "p99_ms": 0.0, "max_ms": 0.0}
     printed = json.dumps({"messages": 0, "bytes": 0, "lateness": late})
-    monkeypatch.setattr(recording.subprocess, "run", lambda *_, **__: Ended(printed))
+    monkeypatch.setattr(command_answer.subprocess, "run", lambda *_, **__: Ended(printed))
     with pytest.raises(NoMeasurement, match="the replay at rate 4 has published no message"):
         recording._replay(None, None, "tcp/127.0.0.1:1", "nowhere.mcap", 4)
 
 
-@pytest.mark.promise("P55")
-def test_a_verification_of_no_tick_has_measured_nothing(monkeypatch, tmp_path):
+@pytest.fixture
+def recorded(monkeypatch, tmp_path):
+    """The recording of a soccer run that the benchmark would make."""
+
     class Recorded:
         def __init__(self, *arguments):
             shutil.copy(GOLDEN, tmp_path / "run.mcap")
@@ -148,9 +150,27 @@ def test_a_verification_of_no_tick_has_measured_nothing(monkeypatch, tmp_path):
             return 0
 
     monkeypatch.setattr(recording, "Child", Recorded)
-    monkeypatch.setattr(recording.subprocess, "run", lambda *_, **__: Ended('[{"ticks": 0, "took_s": 0.1}]'))
+    return tmp_path / "run.mcap"
+
+
+@pytest.mark.promise("P55")
+def test_a_verification_of_no_tick_has_measured_nothing(monkeypatch, recorded):
+    monkeypatch.setattr(command_answer.subprocess, "run", lambda *_, **__: Ended('[{"ticks": 0, "took_s": 0.1}]'))
     with pytest.raises(NoMeasurement, match="verify has compared no tick"):
-        recording._soccer(Table(), tmp_path / "run.mcap")
+        recording._soccer(Table(), recorded)
+
+
+def test_a_verification_that_is_refused_has_measured_nothing_and_names_the_reason(monkeypatch, recorded):
+    refused = Ended("", "tailor verify: run.mcap: no provenance\n", 2)
+    monkeypatch.setattr(command_answer.subprocess, "run", lambda *_, **__: refused)
+    with pytest.raises(NoMeasurement, match="verify has ended with code 2: tailor verify: run"):
+        recording._soccer(Table(), recorded)
+
+
+def test_a_command_that_does_not_end_has_measured_nothing(monkeypatch):
+    monkeypatch.setattr(command_answer, "LIMIT_S", 0.1)
+    with pytest.raises(NoMeasurement, match="sleep has not ended after 0 s"):
+        command_answer.answer("sleep", [sys.executable, "-c", "import time; time.sleep(60)"])
 
 
 def test_run_that_was_not_recorded_is_no_measurement(monkeypatch, tmp_path):
