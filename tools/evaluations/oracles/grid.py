@@ -98,7 +98,12 @@ def _judged(seed: int, outcomes: Sequence[Outcome], zero: Outcome) -> Oracle:
 
 
 def _first_action_s(outcome: Outcome) -> float:
-    """Seconds until the first action of the plan is done, asserted subgoals included; inf if it failed at first."""
+    """Seconds until the first action of the plan is done, asserted subgoals included; inf if it failed at first.
+
+    0 for a goal that held at the start, which needs no action.
+    """
+    if not outcome.actions:
+        return 0.0
     before = itertools.takewhile(lambda predicted: predicted[1], outcome.predicted_actions)
     end = min(sum(1 for _ in before), len(outcome.actions) - 1)
     return sum(outcome.actual_s[: end + 1]) if outcome.outcomes[end] == "done" else float("inf")

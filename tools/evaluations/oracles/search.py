@@ -72,7 +72,7 @@ def search_start(task: Task, refined: Variant, seed: int, runs: int) -> list[Out
     for choice, _ in chosen:
         search.note(choice, _pinned(task, alone, choice, seed))
     half = search.best
-    for number in range(runs):
+    for number in range(runs if search.labels else 0):
         choice = search.propose(number)
         search.note(choice, _pinned(task, alone, choice, seed))
         if number < runs // 2:
@@ -91,20 +91,21 @@ class Search:
     Attributes:
       choice: The fastest one so far.
       best: Its run.
+      labels: Whose parameters are changed, in turns; without any there is nothing to propose.
     """
 
     def __init__(self, ranges: Ranges, rng: np.random.Generator) -> None:
         self.choice: Choice = {}
         self.best: Outcome
         self._ranges, self._rng = ranges, rng
-        self._labels = sorted({label for label, _ in ranges})
-        self._shares = dict.fromkeys(self._labels, FIRST_SHARE)
+        self.labels = sorted({label for label, _ in ranges})
+        self._shares = dict.fromkeys(self.labels, FIRST_SHARE)
         self._label: str | None = None  # of the proposal that is simulated
         self._best_s = float("inf")
 
     def propose(self, number: int) -> Choice:
         """The fastest choice with other values at one label, within their ranges."""
-        self._label = self._labels[number % len(self._labels)]
+        self._label = self.labels[number % len(self.labels)]
         here = [key for key in self._ranges if key[0] == self._label]
         changed = self._rng.random(len(here)) < P_CHANGED
         changed[self._rng.integers(len(here))] = True
@@ -112,7 +113,8 @@ class Search:
         choice = dict(self.choice)
         for key, step in zip((k for k, c in zip(here, changed, strict=True) if c), steps[changed], strict=True):
             lower, upper = self._ranges[key]
-            choice[key] = float(np.clip(choice[key] + step * (upper - lower), lower, upper))
+            before = choice.get(key, (lower + upper) / 2)  # a run that failed early may not have had it
+            choice[key] = float(np.clip(before + step * (upper - lower), lower, upper))
         return choice
 
     def note(self, choice: Choice, outcome: Outcome) -> None:

@@ -9,8 +9,11 @@ import numpy as np
 import pytest
 
 from tailor.schemas import messages as m
+from tailor.tools.evaluations.oracles import grid
+from tailor.tools.evaluations.oracles import search as oracle_search
+from tailor.tools.evaluations.oracles.grid import N_AGAIN
 from tailor.tools.evaluations.oracles.search import Search, last_choice
-from tailor.tools.evaluations.outcome import Outcome
+from tailor.tools.evaluations.outcome import Outcome, Variant
 from tailor.tools.lockstep.run import Run
 
 RANGES = {("a", "x"): (0.0, 1.0), ("a", "y"): (-2.0, 2.0), ("b", "x"): (5.0, 6.0)}
@@ -47,6 +50,25 @@ def test_a_choice_that_fails_or_is_slower_is_not_kept():
     assert (search.choice, search.best) == (START, run_of(START))
 
 
+def test_a_parameter_that_the_failed_first_runs_lacked_is_searched_from_the_middle_of_its_range():
+    search, failed = Search(RANGES, np.random.default_rng(1)), replace(DONE, achieved=False)
+    search.note({("a", "x"): 0.9}, failed)
+    search.note({}, failed)
+    for number in range(60):
+        proposed = search.propose(number)
+        assert all(lower <= proposed[key] <= upper for key, (lower, upper) in RANGES.items() if key in proposed)
+        search.note(proposed, run_of(proposed) if proposed.keys() == RANGES.keys() else failed)
+    assert search.best.achieved
+
+
+def test_where_nothing_is_free_the_first_runs_are_what_is_found(monkeypatch):
+    runs = []
+    monkeypatch.setattr(oracle_search, "_run", lambda task, variant, seed: (Run(), DOMAIN))
+    monkeypatch.setattr(oracle_search, "_pinned", lambda *arguments: runs.append(arguments) or DONE)
+    assert oracle_search.search_start(None, Variant("oracle"), 1, 50) == [DONE] * (2 + N_AGAIN)
+    assert len(runs) == 2 + N_AGAIN
+
+
 DOMAIN = SimpleNamespace(actions={"go": SimpleNamespace(parameters=(SimpleNamespace(name="xg", quantity="x"),))})
 
 
@@ -63,3 +85,8 @@ def test_the_last_free_values_of_a_run_are_its_choice():
 
 def _parameter(label, bound, value):
     return m.Parameter("xg", 1, label, "m", bound, 0.0, 1.0, value)
+
+
+def test_a_goal_that_holds_at_the_start_is_judged_by_the_grid_too():
+    one = grid._judged(1, [replace(DONE, duration_s=0.0)], DONE)
+    assert (one.ceiling_s, one.greedy_s, one.zero_s) == (0.0, 0.0, 10.0)
