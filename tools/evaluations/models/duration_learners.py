@@ -31,7 +31,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and publish the report; exit code 0."""
+    """Evaluate and publish the report; exit code 0.
+
+    Raises:
+      UsageError: No such robot or action, or no episode of one finished.
+    """
     arguments = seeded(arguments)
     rows = [row for action in arguments.actions for row in _rows(action, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
@@ -42,10 +46,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
     more = arguments.seed, arguments.jobs, arguments.store
-    gathered = fresh.training(arguments.robot, action, arguments.train, *more).episodes
-    train = duration_examples([episode for episode in gathered if episode.finished], arguments.ticks)
-    unseen = fresh.evaluation(arguments.robot, action, arguments.episodes, *more).episodes
-    test = duration_examples([episode for episode in unseen if episode.finished], 1)
+    gathered = fresh.training(arguments.robot, action, arguments.train, *more)
+    train = duration_examples(fresh.finished(action, gathered), arguments.ticks)
+    unseen = fresh.evaluation(arguments.robot, action, arguments.episodes, *more)
+    test = duration_examples(fresh.finished(action, unseen), 1)
     space = projective
     rows = []
     for name in tracked(list(learners.DURATION_LEARNERS), f"{action}: learners"):

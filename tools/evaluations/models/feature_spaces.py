@@ -30,12 +30,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and publish the report; 0 if the order is the paper's: direct, relative, projective."""
+    """Evaluate and publish the report; 0 if the order is the paper's: direct, relative, projective.
+
+    Raises:
+      UsageError: No such robot, action or learner, or no episode finished.
+    """
     arguments = seeded(arguments)
     common = arguments.robot, arguments.action
     more = arguments.seed, arguments.jobs, arguments.store
     gathered = fresh.training(*common, PAPER_EPISODES, *more), fresh.evaluation(*common, arguments.episodes, *more)
-    finished = ([episode for episode in data.episodes if episode.finished] for data in gathered)
+    finished = [fresh.finished(arguments.action, data) for data in gathered]
     train, test = (duration_examples(some, n_i) for some, n_i in zip(finished, (N_I, 1), strict=True))
     rows: list[dict[str, Any]] = []
     for name in tracked(ORDER, "feature spaces"):

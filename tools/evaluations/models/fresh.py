@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tailor.models.episodes.episodes import DataSet, read_data_set
+from tailor.models.episodes.episodes import DataSet, Episode, read_data_set
+from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.choosing_models import models_hash
@@ -38,6 +39,18 @@ def evaluation(robot: str, action: str, count: int, seed: int, jobs: int, store:
 def training(robot: str, action: str, count: int, seed: int, jobs: int, store: Path) -> DataSet:
     """Episodes to train on, the same as `tailor gather` makes with that seed."""
     return episodes(robot, action, count, seed, jobs, store, TRAINING_STREAM)
+
+
+def finished(action: str, data: DataSet) -> list[Episode]:
+    """The episodes of a data set that finished.
+
+    Raises:
+      UsageError: There is none.
+    """
+    some = [episode for episode in data.episodes if episode.finished]
+    if not some:
+        raise UsageError(f"{action}: none of {len(data.episodes)} episodes finished, expected some to judge by")
+    return some
 
 
 def chosen(robot: str, scenarios: Sequence[str], runs: int, seed: int, zoo: str, jobs: int, store: Path) -> Path:

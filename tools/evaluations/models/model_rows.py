@@ -16,7 +16,6 @@ from tailor.models.episodes.examples import duration_examples, success_examples
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.runtime import load_robot
 from tailor.models.training import scores
-from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
@@ -70,8 +69,7 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     made = []
     for name, action in tracked(sorted(declared.actions.items()), "actions"):
         data = fresh.evaluation(declared.robot, name, arguments.episodes, seed, arguments.jobs, arguments.store)
-        if not any(episode.finished for episode in data.episodes):
-            raise UsageError(f"{name}: none of {len(data.episodes)} fresh episodes finished, expected some to judge by")
+        fresh.finished(name, data)
         row = {"domain": domain, "action": name, **duration_columns(durations, action.duration_model, data, seed)}
         row |= _failures(successes[action.success_model], data) if action.success_model else {}
         row |= floor_columns(row, data, (declared.robot, name, seed, arguments.jobs)) if floors else {}

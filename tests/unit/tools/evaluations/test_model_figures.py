@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -127,8 +128,21 @@ def test_runs_that_do_not_finish_have_no_share_in_the_noise_floor(monkeypatch):
     assert (floor_s.tolist(), alike.tolist()) == ([0.0], [7 / 8])
 
 
-def test_an_action_that_never_finishes_is_named(monkeypatch, capsys, tmp_path):
+@pytest.mark.parametrize(
+    ("words", "action", "never"),
+    [
+        (("models", "--domain", "arm", "--episodes", "6"), "reach", "evaluation"),
+        (("feature-spaces",), "goToPose", "training"),
+        (("feature-spaces",), "goToPose", "evaluation"),
+        (("duration-learners",), "goToPose", "training"),
+        (("duration-learners",), "goToPose", "evaluation"),
+    ],
+)
+def test_an_action_that_never_finishes_is_named(monkeypatch, capsys, tmp_path, words, action, never):
     episode = Episode(0, np.zeros(10), np.zeros((2, 10)), 40.0, False, "time limit", finished=False)
-    monkeypatch.setattr(fresh, "evaluation", lambda *_: DataSet({}, (episode,) * 6, ""))
-    assert main(["evaluate", "models", "--domain", "arm", "--episodes", "6", "--store", str(tmp_path)]) == 2
-    assert "reach: none of 6 fresh episodes finished, expected some to judge by" in capsys.readouterr().err
+    ended = replace(episode, finished=True)
+    for stream in ("training", "evaluation"):
+        data = DataSet({}, (episode if stream == never else ended,) * 6, "")
+        monkeypatch.setattr(fresh, stream, lambda *_, data=data: data)
+    assert main(["evaluate", *words, "--store", str(tmp_path)]) == 2
+    assert f"{action}: none of 6 episodes finished, expected some to judge by" in capsys.readouterr().err
