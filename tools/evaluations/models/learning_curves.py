@@ -46,7 +46,9 @@ REMARKS = (
     "episodes: most of each action; on-policy: half random, half from runs of the scenario with the models of the "
     "random half; active: that half from choices on which these models disagree most",
     "improvement: refined over greedy with the same models; 95 % interval over sets of models, each learned anew; all "
-    "sets are judged from the same starts; error: mean absolute, of the mean duration, on fresh random episodes",
+    "sets are judged from the same starts; without gain: sets whose models reached the goal both ways from fewer than "
+    "two starts, which count in failed and error alone; error: mean absolute, of the mean duration, on fresh random "
+    "episodes",
 )
 
 
@@ -128,16 +130,19 @@ def _first_seed(domain: str) -> int:
 
 
 def _row(point: Point, sets: Sequence[dict[str, float]], starts: int) -> dict[str, Any]:
-    gains = np.array([figures["improvement_pct"] for figures in sets])
-    means = {key: float(np.mean([figures[key] for figures in sets])) for key in sets[0] if key != "improvement_pct"}
+    """Means over the sets that have a figure: one whose models hardly ever reach the goal has no gain."""
+    keys = max(sets, key=len)
+    values = {key: np.array([figures[key] for figures in sets if key in figures]) for key in keys}
+    gains = values.pop("improvement_pct", np.array([]))
     return {
         "gathered": point.method,
         "episodes": point.episodes,
         "sets": len(sets),
         "n": starts * len(sets),
-        "improvement_pct": float(gains.mean()),
+        "without_gain": len(sets) - len(gains),
+        "improvement_pct": float(gains.mean()) if len(gains) else float("nan"),
         "ci95": mean_interval(gains),
-        **means,
+        **{key: float(found.mean()) for key, found in values.items()},
     }
 
 
@@ -167,14 +172,17 @@ def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[
     task = Task(settings.domain, settings.scenario, zoo=str(making.zoo))
     seeds = range(settings.seed, settings.seed + settings.starts)
     runs = run_all(task, (GREEDY, REFINED), seeds, settings.jobs, settings.store, title)
-    gain = compare(*paired(runs[GREEDY.name], runs[REFINED.name]))
+    greedy_s, refined_s = paired(runs[GREEDY.name], runs[REFINED.name])
+    failed = {"failed_pct": 100 * (1 - len(greedy_s) / settings.starts), **_errors(settings, making.zoo)}
+    if len(greedy_s) < 2:  # models of few episodes may hardly ever reach the goal: no gain, and no end of all curves
+        return failed
+    gain = compare(greedy_s, refined_s)
     return {
         "improvement_pct": gain.improvement_pct,
         "mean_greedy_s": gain.mean_baseline_s,
         "mean_refined_s": gain.mean_s,
         "slower_pct": gain.slower_pct,
-        "failed_pct": 100 * (1 - gain.n / settings.starts),
-        **_errors(settings, making.zoo),
+        **failed,
     }
 
 
@@ -197,5 +205,6 @@ def _plot(rows: Sequence[dict[str, Any]], path: Path) -> Path:
 def _curves(rows: Sequence[dict[str, Any]]) -> Iterator[tuple[str, list[tuple[float, float, float, float]]]]:
     """Points of each way of gathering: episodes, improvement, and its interval."""
     for method in dict.fromkeys(row["gathered"] for row in rows):
-        mine = [row for row in rows if row["gathered"] == method]
-        yield method, [(row["episodes"], row["improvement_pct"], *row["ci95"]) for row in mine]
+        mine = [row for row in rows if row["gathered"] == method and row["without_gain"] < row["sets"]]
+        if mine:
+            yield method, [(row["episodes"], row["improvement_pct"], *row["ci95"]) for row in mine]

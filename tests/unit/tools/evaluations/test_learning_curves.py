@@ -52,6 +52,28 @@ def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypat
     assert [row["n"] for row in json.loads(capsys.readouterr().out)["rows"]] == [9, 9]
 
 
+def test_a_set_whose_models_hardly_ever_reach_the_goal_has_no_gain_and_ends_no_curve(monkeypatch, capsys, tmp_path):
+    made = []
+    monkeypatch.setattr(learning_curves, "make", lambda making: made.append(making) or [])
+
+    def run_all(task, variants, seeds, *_):
+        poor = made[-1].recipe.seed == FIRST_RECIPE_SEED + 1 or made[-1].recipe.episodes < 200
+        return {
+            v.name: {s: SimpleNamespace(achieved=not poor or s == seeds[0], duration_s=10.0 - k) for s in seeds}
+            for k, v in enumerate(variants)
+        }
+
+    monkeypatch.setattr(learning_curves, "run_all", run_all)
+    monkeypatch.setattr(learning_curves, "_errors", lambda *_: {"error_pct": 2.0})
+    flags = ["--domain", "soccer", "--episodes", "100", "300", "--sets", "3", "--starts", "4", "--methods", "random"]
+    flags += ["--store", str(tmp_path / "store"), "--report", str(tmp_path), "--json"]
+    assert main(["evaluate", "learning-curves", *flags]) == 0
+    few, many = json.loads(capsys.readouterr().out)["rows"]
+    assert (few["sets"], few["without_gain"], few["improvement_pct"], few["failed_pct"]) == (3, 3, None, 75.0)
+    assert (many["sets"], many["without_gain"], many["improvement_pct"]) == (3, 1, pytest.approx(10.0))
+    assert (many["failed_pct"], many["mean_greedy_s"]) == (25.0, 10.0)
+
+
 def test_a_domain_must_be_named(capsys) -> None:
     assert main(["evaluate", "learning-curves"]) == 2
     assert "expected --domain NAME" in capsys.readouterr().err
