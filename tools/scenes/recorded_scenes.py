@@ -8,6 +8,7 @@ from pathlib import Path
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.new_file import new_file
@@ -30,7 +31,8 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport
       Number of messages added, the feed that made them, and the damage of the source, which the copy's metadata states.
 
     Raises:
-      UsageError: The source is no recording, or the target exists or cannot be written and is removed.
+      UsageError: The source is no recording, or the target exists, or it cannot be written or has too many keys and is
+        removed.
     """
     recording, feed, added = open_recording(source), SceneFeed(), Counter[str]()
     metadata = {name: entries for name, entries in recording.metadata() if name != "topics"}
@@ -52,7 +54,7 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
     for recorded in recording.messages():
         if recorded.ros_type in DERIVED:
             continue
-        writer.write(_raw(recorded), recorded.log_ns)
+        _add(writer, _raw(recorded), recorded.log_ns)
         message = _decoded(recorded) if feed.wants(recorded.key) else None
         made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if message is not None else []
         for topic, each in made:
@@ -60,9 +62,14 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
             added[key] += 1
             origin = pack(Origin(added[key], recorded.log_ns, SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
-            writer.write(raw, recorded.log_ns)
+            _add(writer, raw, recorded.log_ns)
         if writer.is_full and not writer.flush():
             raise UsageError(f"{writer.path}: {writer.disk_error}")
+
+
+def _add(writer: McapWriter, raw: Raw, wall_ns: int) -> None:
+    if not writer.write(raw, wall_ns):
+        raise UsageError(f"{writer.path}: no room for {raw.key}, expected at most {MAX_KEYS} keys, scenes included")
 
 
 def _raw(recorded: Recorded) -> Raw:
