@@ -10,7 +10,7 @@ from tailor.schemas.messages import ExecStatus, Provenance, TickReport
 from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import STALE_S, is_rate
 from tailor.tools.status.picture import ExecutiveView
-from tailor.tools.status.reading import topic_at
+from tailor.tools.status.reading import topic_by_ending
 from tailor.tools.status.ticks import TickTimer
 
 MAX_EXECUTIVES = 8  # remembered; a flood of sender ids must not grow this process
@@ -97,7 +97,7 @@ def _required(table: dict[str, Any]) -> dict[str, float]:
     stated = table.get("required")
     if not isinstance(stated, dict):
         return {}
-    topics = ((key, value, topic_at(key)) for key, value in list(stated.items())[:MAX_REQUIRED])
+    topics = ((key, value, topic_by_ending(key)) for key, value in list(stated.items())[:MAX_REQUIRED])
     return {key: float(value) if is_rate(value) else topic.rate_hz for key, value, topic in topics if topic is not None}
 
 

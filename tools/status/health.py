@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.status.picture import DriverView, ExecutiveView, Finding, ForeignView, LauncherView, TopicView
-from tailor.tools.status.reading import topic_at
+from tailor.tools.status.reading import topic_by_ending
 
 
 class Problem(StrEnum):
@@ -101,7 +101,7 @@ def _of_missing(executives: Sequence[ExecutiveView], topics: Sequence[TopicView]
     received = {topic.key for topic in topics}
     required = {key for executive in executives if not executive.silent for key in executive.required}
     for key in sorted(required - received):
-        topic = topic_at(key)
+        topic = topic_by_ending(key)
         if topic is not None and topic.fresh_s is not None and observed_s > topic.fresh_s:
             yield Problem.TOPIC_MISSING, f"{key}, required, not received in {observed_s:.1f} s"
 

@@ -43,8 +43,8 @@ def topic_of(key: str) -> tuple[str, str] | None:
     return None
 
 
-def topic_at(key: str) -> Topic | None:
-    """Topic of a key, e.g. that of odometry at agilo/odom; None for a foreign key."""
+def topic_by_ending(key: str) -> Topic | None:
+    """Topic of a key, whatever the name of its robot: that of odometry at hall/agilo/odom; None for a foreign key."""
     match = topic_of(key)
     return None if match is None else TOPICS[match[0]]
 

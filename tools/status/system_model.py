@@ -14,7 +14,7 @@ from tailor.tools.status.executives import Executives
 from tailor.tools.status.foreign import ForeignCounts
 from tailor.tools.status.health import findings
 from tailor.tools.status.picture import LauncherView, Picture, TopicView
-from tailor.tools.status.reading import Received, read, topic_at
+from tailor.tools.status.reading import Received, read, topic_by_ending
 
 SLOW_SHARE = 0.75  # of the topic's rate; at half of it no new action starts
 LAUNCHER_SILENCE_S = 3.0  # it publishes once a second
@@ -131,6 +131,6 @@ def _topic_view(key: str, arrivals: Arrivals, rates_hz: Mapping[str, float], now
 
 
 def _topic(key: str) -> Topic:
-    topic = topic_at(key)
+    topic = topic_by_ending(key)
     assert topic is not None, "only such keys are recorded"
     return topic
