@@ -54,13 +54,13 @@ class ChildOutput:
             self._read += left_out
 
     def _free(self) -> None:
-        """Give the space of what has been read back; a file system that cannot do so keeps it.
+        """Give the space of what has been read back; a system that cannot do so keeps it.
 
         To truncate the file would lose what a child prints meanwhile.
         """
-        free = ctypes.CDLL(None).fallocate
-        begin, size = (ctypes.c_long(number) for number in (self._freed, self._read - self._freed))
-        free(self._file.fileno(), _KEEP_SIZE | _PUNCH_HOLE, begin, size)
+        if (free := getattr(ctypes.CDLL(None), "fallocate", None)) is not None:
+            begin, size = (ctypes.c_long(number) for number in (self._freed, self._read - self._freed))
+            free(self._file.fileno(), _KEEP_SIZE | _PUNCH_HOLE, begin, size)
         self._freed = self._read
 
     def _end_line(self) -> None:
