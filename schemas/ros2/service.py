@@ -13,7 +13,7 @@ from tailor.schemas.services import MAX_REQUEST_BYTES, SERVICES
 from tailor.schemas.typesystem import add_service, from_bytes, hash_of, ros_class, to_bytes
 
 SET_GOAL = f"{PACKAGE}/srv/SetGoal"
-REQUEST = "string goal  # in PDDL, e.g. (atball pos3); empty: the goal of the scenario"
+REQUEST = "string goal  # in PDDL, e.g. (and (final pos3) (atball pos3)); empty: the goal of the scenario"
 RESPONSE = "bool accepted\nstring message  # the cause, if it was refused"
 
 

@@ -1,4 +1,7 @@
-"""Send a PDDL goal to the running executive, e.g. "(atball pos3)"; the default is the goal of the scenario."""
+"""Send a PDDL goal to the running executive, e.g. "(and (final pos3) (atball pos3))".
+
+The default is the goal of the scenario.
+"""
 
 from __future__ import annotations
 
