@@ -8,6 +8,7 @@ from rich.table import Table
 
 from tailor.models.rules.rule_text import UNITLESS
 from tailor.schemas.messages import RefinementReport
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
@@ -21,13 +22,22 @@ def duration_table(explanation: Explanation) -> Table:
     for column in table.columns[1:]:
         column.justify = "right"
     for name, chosen, greedy in zip(explanation.actions, explanation.chosen_s, explanation.greedy_s, strict=True):
-        table.add_row(name, *_compared(chosen, greedy))
+        table.add_row(plain(name), *_compared(chosen, greedy))
     table.add_row("sum", *_compared(sum(explanation.chosen_s), sum(explanation.greedy_s)), style="bold")
     if explanation.chosen_j:
         chosen_j, greedy_j = sum(explanation.chosen_j), sum(explanation.greedy_j)
         table.add_row("energy", f"{chosen_j:.2f} J", f"{greedy_j:.2f} J", f"{chosen_j - greedy_j:+.2f} J")
     table.add_row("objective", *_compared(explanation.chosen_cost, explanation.greedy_cost))
     return table
+
+
+def explanation_lines(explanation: Explanation, best_cost: float, decision: Decision) -> list[str]:
+    """Lines below the table of durations; `best_cost`: of a long search."""
+    lines = [parameter_text(parameter) for parameter in explanation.parameters]
+    for situation in explanation.situations:
+        lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
+    long_search = long_search_text(explanation.chosen_cost, best_cost)
+    return [*lines, long_search, certificate_text(decision.report), search_text(decision)]
 
 
 def parameter_text(free: FreeParameter) -> str:

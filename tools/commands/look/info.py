@@ -123,7 +123,8 @@ def _show(summary: dict[str, Any]) -> None:
             console.print(plain(f"{name}: {reason}"))
     if summary["modes"]:
         ticks = summary["ticks"]
-        console.print("ticks by mode: " + ", ".join(f"{mode} {count}" for mode, count in summary["modes"].items()))
+        modes = ", ".join(f"{mode} {count}" for mode, count in summary["modes"].items())
+        console.print(plain(f"ticks by mode: {modes}"))
         console.print(f"ticks, ms: {_spread('late', ticks['late_ms'])}; {_spread('work', ticks['work_ms'])}")
         console.print(f"periods skipped: {ticks['skipped_periods']}")
 

@@ -13,23 +13,16 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.viewer.decisions import Decision, decisions_of, executed, in_force
 from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import (
-    certificate_text,
-    duration_table,
-    features_text,
-    long_search_text,
-    parameter_text,
-    search_text,
-)
+from tailor.tools.viewer.explanation_text import duration_table, explanation_lines
 from tailor.tools.viewer.explanations.explanation import Explanation
 from tailor.tools.viewer.recorded_messages import timed
 
@@ -118,22 +111,16 @@ def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
 
 
 def _show(decisions: Sequence[ExplainedDecision]) -> None:
-    console = Console(soft_wrap=True)
+    console = Console(soft_wrap=True, markup=False, highlight=False)  # names come from the recording
     for explained in decisions:
-        if explained.explanation is None:
-            console.print(f"[bold]{explained.title}[/bold]\n  no parameter was free\n", highlight=False)
-            continue
-        console.print(f"[bold]{explained.title}[/bold]", highlight=False)
-        console.print(duration_table(explained.explanation))
-        for parameter in explained.explanation.parameters:
-            console.print(f"  {parameter_text(parameter)}", highlight=False)
-        for situation in explained.explanation.situations:
-            console.print(f"  {features_text(situation)}", highlight=False)
-            if situation.rule:
-                console.print(f"    {escape(situation.rule)}", highlight=False)
-        console.print(f"  {long_search_text(explained.explanation.chosen_cost, explained.best_cost)}", highlight=False)
-        console.print(f"  {certificate_text(explained.decision.report)}", highlight=False)
-        console.print(f"  {search_text(explained.decision)}\n", highlight=False)
+        console.print(plain(explained.title), style="bold")
+        lines = ["no parameter was free"]
+        if explained.explanation is not None:
+            console.print(duration_table(explained.explanation))
+            lines = explanation_lines(explained.explanation, explained.best_cost, explained.decision)
+        for line in lines:
+            console.print(f"  {plain(line)}")
+        console.print()
 
 
 def _json_value(explained: ExplainedDecision) -> dict[str, Any]:

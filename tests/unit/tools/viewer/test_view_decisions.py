@@ -7,6 +7,7 @@ import dataclasses
 import pytest
 
 from tailor.schemas import messages as m
+from tailor.tools.commands.look import why
 from tailor.tools.viewer.decisions import decisions_of, executed, in_force
 from tailor.tools.viewer.explanation_text import certificate_text
 from tailor.tools.viewer.recorded_messages import Timed
@@ -85,3 +86,11 @@ def test_the_search_of_the_next_decision_does_not_count_for_one_whose_action_has
 def test_an_old_search_does_not_count_for_a_new_decision() -> None:
     log = log_of(report(5, 40), BEGIN, m.Subgoals(0, 30, 2, ()))
     assert log.decisions[1].report is None
+
+
+def test_names_in_a_recording_are_neither_markup_nor_control_characters(capsys) -> None:
+    """A closing tag that closes nothing ended the command in a traceback."""
+    action = m.InstantiatedAction("[/bold]\x1b[31m", 1, False, 1.0, 0.1)
+    decision = dataclasses.replace(soccer().decisions[0], subgoals=m.Subgoals(0, 5, 2, (action,)))
+    why._show([why.ExplainedDecision(decision, None)])
+    assert r"[/bold]\x1b[31m" in capsys.readouterr().out
