@@ -45,14 +45,21 @@ def compared_run(path: Path) -> ComparedRun:
     """First run in a recording.
 
     Raises:
-      UsageError: The file is not a recording, or holds no run.
+      UsageError: The file is not a recording, holds no run, or a message of the run is damaged.
     """
     run = RecordedRuns(path).runs[0]
+    try:
+        return _compared(path.stem, run)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _compared(name: str, run: RecordedRun) -> ComparedRun:
     status = _published(run, "status", ExecStatus)
     results = [result_text(s.result, s.result_reason, s.result_detail) for s in status if s.result]
     axes, commands = _commands(run)
     return ComparedRun(
-        name=path.stem,
+        name=name,
         actions=tuple(_published(run, "finished", ActionFinished)),
         plans=tuple(_published(run, "plan", PlanReport)),
         subgoals=tuple(_published(run, "subgoals", Subgoals)),

@@ -24,6 +24,7 @@ class RecordedRun:
     """Run of one executive; `published` holds its messages by key, ordered by sequence number."""
 
     sender: str
+    fault: str = ""  # of its provenance; the run is then no executive's
     provenance: dict[str, Any] = field(default_factory=dict)
     ticks: list[TickReport] = field(default_factory=list)
     published: dict[str, list[Recorded]] = field(default_factory=lambda: defaultdict(list))

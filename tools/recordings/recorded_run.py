@@ -34,8 +34,9 @@ ANSWER_KEY = TOPICS["plan_answer"].key  # published by the executive, but an inp
 class RecordedRuns:
     """All runs of executives in a recording, and the messages that may be inputs of their ticks.
 
-    Anyone may publish on exec/tick. A run consists of the messages of one sender that also published provenance;
-    without any provenance, every sender of ticks has a run. Other messages on exec/tick are counted in `left_out`.
+    Anyone may publish on exec/tick. A run consists of the messages of one sender that also published provenance which
+    can be read; without any provenance, every sender of ticks has a run. Other messages on exec/tick are counted in
+    `left_out`.
     """
 
     def __init__(self, path: Path) -> None:
@@ -48,13 +49,20 @@ class RecordedRuns:
         self.damage = recording.damage  # of the file
         by_sender = {sender: RecordedRun(sender) for sender in executives(everything)}
         for message in everything:
-            if message.sender in by_sender and message.key != ANSWER_KEY:
-                self._add(by_sender[message.sender], message)
-            else:
-                self._inputs[message.key, message.sender, message.sequence] = message
-                if message.key == TICK_KEY:
+            # of equal numbers the first one: an executive refuses the others
+            self._inputs.setdefault((message.key, message.sender, message.sequence), message)
+            if message.key != ANSWER_KEY:
+                if message.sender in by_sender:
+                    self._add(by_sender[message.sender], message)
+                elif message.key == TICK_KEY:
                     self.left_out[f"from {message.sender[:8] or 'an unknown sender'}, not an executive"] += 1
-        self.runs = [run for run in by_sender.values() if run.ticks]
+        ticking = [run for run in by_sender.values() if run.ticks]
+        self.runs = [run for run in ticking if not run.fault]
+        if ticking and not self.runs:
+            raise UsageError(f"{path}: {ticking[0].fault}")
+        for run in ticking:
+            if run.fault:
+                self.left_out[f"from {run.sender[:8]}, whose provenance is damaged"] += len(run.ticks)
         if not self.runs:
             raise UsageError(f"{path}: {self._missing(recording)}, expected the recording of a run")
         for run in self.runs:
@@ -76,7 +84,8 @@ class RecordedRuns:
         try:
             problem = add(run, message)
         except UsageError as error:
-            raise UsageError(f"{self.path}: {error}") from None
+            run.fault = str(error)
+            return
         if problem:
             self.left_out[problem] += 1
 

@@ -1,5 +1,6 @@
 """Anyone may publish on exec/tick: messages that are no ticks of an executive are counted and reported."""
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import EStop, TickReport, VelocityCommand
+from tailor.schemas.messages import EStop, Provenance, TickReport, VelocityCommand
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.main import main
 from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
@@ -109,6 +110,53 @@ def test_without_its_first_tick_nothing_is_verified(tmp_path, capsys, whole):
     kept = [m for m in whole if m.key != TICK_KEY or decode(TickReport, m.data).tick != 1]
     assert main(["verify", str(written(tmp_path / "a.mcap", kept))]) == 2
     assert "tick 1 is missing" in capsys.readouterr().err
+
+
+def copied(whole, executive, **provenance):
+    """The run once more, by a stranger of another provenance."""
+    copies = [replace(m, sender=STRANGER) for m in whole if m.sender == executive]
+    data = {PROVENANCE_KEY: encode(Provenance(0, **provenance))}
+    return [replace(m, data=data.get(m.key, m.data)) for m in copies]
+
+
+def test_a_stranger_whose_provenance_cannot_be_read_is_no_executive(tmp_path, capsys, whole, executive):
+    """It made the file one that cannot be verified."""
+    path = written(tmp_path / "a.mcap", [*copied(whole, executive, json="none"), *whole])
+    assert main(["verify", str(path)]) == 0
+    verdict, ignored = capsys.readouterr().out.splitlines()
+    assert verdict.startswith("equal: ")
+    assert re.fullmatch(rf"  ignored on exec/tick: \d+ from {STRANGER[:8]}, whose provenance is damaged", ignored)
+    assert main(["verify", str(written(tmp_path / "b.mcap", copied(whole, executive, json="none")))]) == 2
+    assert "exec/provenance: not JSON" in capsys.readouterr().err
+
+
+def test_beside_an_executive_of_a_robot_that_is_unknown_here_the_others_are_verified(
+    tmp_path, capsys, whole, executive
+):
+    made = json.loads(decode(Provenance, next(m.data for m in whole if m.key == PROVENANCE_KEY)).json)
+    made["config"]["domain"] = "elsewhere"
+    path = written(tmp_path / "a.mcap", [*copied(whole, executive, json=json.dumps(made)), *whole])
+    assert main(["verify", str(path)]) == 2
+    printed = capsys.readouterr()
+    assert printed.out.startswith("equal: ")
+    assert re.match(rf"tailor verify: executive {STRANGER[:8]}: .*'elsewhere'", printed.err)
+
+
+def test_what_an_executive_read_from_another_one_is_found(tmp_path, whole, executive):
+    """On an open bus whoever publishes ticks and a provenance may publish readings of sensors as well."""
+    driver = next(m.sender for m in whole if m.key == "agilo/driver")
+    false = [replace(m, sender=driver) for m in whole if m.key in (TICK_KEY, PROVENANCE_KEY)]
+    runs = RecordedRuns(written(tmp_path / "a.mcap", [*whole, *false]))
+    own = next(run for run in runs.runs if run.sender == executive)
+    assert len(runs.runs) == 2
+    assert verify(runs, own, rebuild_context(own.provenance)).difference is None
+
+
+def test_a_damaged_message_of_a_run_is_reported_with_its_file(tmp_path, capsys, whole, executive):
+    status = next(m for m in whole if m.key == "exec/status")
+    path = written(tmp_path / "a.mcap", [*whole, replace(status, sequence=9999, data=GARBAGE)])
+    assert main(["compare", str(path), str(path)]) == 2
+    assert capsys.readouterr().err.startswith(f"tailor compare: {path}: exec/status number 9999: ")
 
 
 def test_a_file_with_only_garbage_on_the_tick_topic_holds_no_run(tmp_path, whole):

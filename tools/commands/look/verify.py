@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from tailor.runtime.platform_fingerprint import platform_fingerprint
 from tailor.runtime.recordings.new_file import new_file
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 from tailor.tools.recordings.recorded_source import source_entry
@@ -44,9 +46,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError("--output writes all outputs of today's core, expected it without --without-proofs")
     runs = RecordedRuns(arguments.recording)
     warn(arguments.recording, runs.damage)
+    faults: list[str] = []
     if arguments.output is None:
-        proofs = not arguments.without_proofs
-        verdicts = [_verified(runs, run, proofs) for run in runs.runs]
+        verdicts, faults = _verify_each(runs, not arguments.without_proofs)
     else:
         verdicts = [_verify_and_write(arguments.output, runs)]
     if arguments.json:
@@ -54,9 +56,28 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         for verdict in verdicts:
             print(verdict_text(verdict))
+    for fault in faults:
+        print(f"tailor verify: {plain(fault)}", file=sys.stderr)
     if any(verdict.difference for verdict in verdicts):
         return 1
-    return 2 if any(verdict.ends for verdict in verdicts) else 0
+    return 2 if faults or any(verdict.ends for verdict in verdicts) else 0
+
+
+def _verify_each(runs: RecordedRuns, proofs: bool) -> tuple[list[Verdict], list[str]]:
+    """Verdicts on all runs, and of those that cannot be verified here the reasons, such as a robot unknown here.
+
+    Raises:
+      UsageError: The only run of the file cannot be verified.
+    """
+    verdicts, faults = [], []
+    for run in runs.runs:
+        try:
+            verdicts.append(_verified(runs, run, proofs))
+        except UsageError as error:
+            if len(runs.runs) == 1:
+                raise
+            faults.append(f"executive {run.sender[:8]}: {error}")
+    return verdicts, faults
 
 
 def _verified(runs: RecordedRuns, run: RecordedRun, proofs: bool) -> Verdict:
