@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 from tailor.executive.composition import build_context
+from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
@@ -82,6 +83,7 @@ class _System:
         self._senders = Senders()
         self._reports = ProcessReports(session.publisher("processes", self._robot), self._senders, screen)
         self._recording = RecordingWatch(config.require_recording, screen.report)
+        self._folder = RunFolderWatch(config.bus.endpoint)
         self._result = self._stopped = self._reported = ""
 
     def run(self) -> str:
@@ -151,10 +153,12 @@ class _System:
         self._reports.publish(self._supervisor.states(now_ns), now_ns)
 
     def _ended(self) -> str:
-        """Failure if a required process has ended for good, or ""."""
+        """Failure if a required process has ended for good, or nobody can stop the robot from a shell, or ""."""
         for name in (self._config.driver, "executive"):
             if self._supervisor.state(name) is State.ENDED:
                 return f"failed: {name} ended"
+        if failure := self._folder.failure():
+            return failure
         if self._config.record is None:
             return ""
         return self._recording.failure(

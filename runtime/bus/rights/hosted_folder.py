@@ -8,6 +8,7 @@ import secrets
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TextIO
 
 from tailor.runtime.bus.rights.run_folder import (
     CERTIFICATE_USER,
@@ -41,7 +42,8 @@ def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Ite
     _make_private(folder.path)
     if len(str(folder.path / SOCKET)) > MAX_SOCKET_BYTES:
         raise UsageError(f"{folder.path}: too long for a socket, expected a shorter {VARIABLE}")
-    with _locked(folder.path / LOCK, endpoint), _kept_from_cleaners(folder.path):
+    lock = folder.path / LOCK
+    with _locked(lock, endpoint) as held, _kept_from_cleaners(folder.path):
         try:
             _empty(folder.path)
             _write_secret(folder.path / PROFILE, [f"{keys.profile} {keys.domain}"])
@@ -50,25 +52,35 @@ def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Ite
                 _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])
             yield folder
         finally:
-            _empty(folder.path)
+            if _is_at(held, lock):
+                _empty(folder.path)
     with suppress(OSError):  # the next bus at this endpoint has made it again
         folder.path.rmdir()
 
 
 @contextmanager
-def _locked(path: Path, endpoint: str) -> Iterator[None]:
+def _locked(path: Path, endpoint: str) -> Iterator[TextIO]:
     """Hold a lock file, which is removed at the end; a lock of a process that has died is free."""
     with path.open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if not os.path.samestat(os.fstat(lock.fileno()), path.stat()):
+            if not _is_at(lock, path):
                 raise BlockingIOError  # removed by its last owner a moment ago
         except OSError as error:
             raise UsageError(f"bus endpoint {endpoint}: it runs already; expected a free one, see --connect") from error
         try:
-            yield
+            yield lock
         finally:
-            path.unlink(missing_ok=True)
+            if _is_at(lock, path):
+                path.unlink()
+
+
+def _is_at(lock: TextIO, path: Path) -> bool:
+    """Whether a lock file is that of the folder: somebody may have removed it, and another bus have made the next."""
+    try:
+        return os.path.samestat(os.fstat(lock.fileno()), path.stat())
+    except OSError:
+        return False
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.notify import Notifier
@@ -27,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Route until stopped; 1 if a gateway has ended for good."""
+    """Route until stopped; 1 if a gateway has ended for good, or the folder of the bus was removed."""
     notifier = Notifier.from_environment()
     settings = with_hosting_flags(bus_settings(arguments), arguments)
     stop = stop_on_signals()
@@ -45,11 +46,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _route(supervisor: Supervisor, settings: BusSettings, notifier: Notifier, stop: Stop) -> int:
     names = [spec.name for spec in gateways(settings)]
-    ready = False
+    ready, folder = False, RunFolderWatch(settings.endpoint)
     while not stop.requested:
         supervisor.poll(time.monotonic_ns())
         states = [supervisor.state(name) for name in names]
         if State.ENDED in states:
+            return 1
+        if failure := folder.failure():
+            _report(failure)
             return 1
         if not ready and State.STARTING not in states:
             ready = True

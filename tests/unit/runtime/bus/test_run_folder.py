@@ -2,15 +2,18 @@
 
 import fcntl
 import os
+import shutil
 import socket
 import stat
+from contextlib import ExitStack
 from tempfile import TemporaryDirectory
 
 import pytest
 
 from tailor.runtime.bus.rights import run_folder as module
+from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.bus.rights.hosted_folder import hosted
-from tailor.runtime.bus.rights.run_folder import LOCK, SOCKET, USERS, run_folder
+from tailor.runtime.bus.rights.run_folder import LOCK, PROFILE, SOCKET, USERS, run_folder
 from tailor.schemas.errors import UsageError
 
 ENDPOINT = "tcp/127.0.0.1:7999"
@@ -110,6 +113,36 @@ def test_nothing_is_left_at_the_end():
     with hosted(ENDPOINT, ["people"]) as folder:
         (folder.path / SOCKET).touch()
     assert not folder.path.exists()
+
+
+def test_the_end_of_a_bus_whose_folder_was_removed_leaves_that_of_the_next_alone():
+    with ExitStack() as first, ExitStack() as second:
+        folder = first.enter_context(hosted(ENDPOINT, ["people"]))
+        shutil.rmtree(folder.path)
+        second.enter_context(hosted(ENDPOINT, ["people"]))
+        password = folder.password("people")
+        first.close()
+        assert (folder.path / LOCK).exists()
+        assert folder.password("people") == password is not None
+    assert not folder.path.exists()
+
+
+@pytest.mark.promise("P45")
+@pytest.mark.parametrize("removed", [SOCKET, USERS, PROFILE, None])
+def test_a_secured_bus_whose_folder_lacks_what_a_session_needs_has_failed(removed):
+    with hosted(ENDPOINT, ["people"]) as folder:
+        (folder.path / SOCKET).touch()
+        watch = RunFolderWatch(ENDPOINT)
+        assert watch.failure() == ""
+        shutil.rmtree(folder.path) if removed is None else (folder.path / removed).unlink()
+        assert f"{folder.path} was removed" in watch.failure()
+
+
+def test_an_open_bus_needs_no_folder():
+    with hosted(ENDPOINT, []) as folder:
+        watch = RunFolderWatch(ENDPOINT)
+        shutil.rmtree(folder.path)
+        assert watch.failure() == ""
 
 
 def test_a_bus_has_one_owner():
