@@ -24,6 +24,9 @@ class Keyboard:
         if self._file is not None:
             self._saved = termios.tcgetattr(self._file)
             tty.setcbreak(self._file)
+            settings = termios.tcgetattr(self._file)
+            settings[0] &= ~termios.IXON  # Ctrl-S is a key like others: it stops no output, for which a loop would wait
+            termios.tcsetattr(self._file, termios.TCSANOW, settings)
         return self
 
     def __exit__(self, *_: object) -> None:

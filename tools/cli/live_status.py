@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Protocol
 
 from rich.console import Console
@@ -12,6 +13,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from tailor.runtime.aside import Aside, aside
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, ProcessStates, Subgoals, TickReport
 from tailor.schemas.reason_text import reason_text, result_text
 
@@ -112,15 +114,29 @@ def processes_text(states: ProcessStates) -> str:
     return "  ".join(parts)
 
 
+class _Beside:
+    """Another screen, for which nobody waits: a terminal may stand still (Ctrl-S), while children are watched."""
+
+    def __init__(self, shown: Screen, terminal: Aside) -> None:
+        self._shown, self._terminal = shown, terminal
+
+    def report(self, line: str) -> None:
+        self._terminal.call(partial(self._shown.report, line))
+
+    def show(self, message: Message) -> None:
+        self._terminal.call(partial(self._shown.show, message))
+
+
 @contextmanager
 def screen(quiet: bool = False) -> Iterator[Screen]:
     """Screen for the kind of stdout: `_Panel` for a terminal, `_Lines` otherwise; quiet: lines on stderr."""
     console = Console(stderr=quiet)
     if quiet or not console.is_terminal:
-        yield _Lines(console)
+        with aside() as terminal:
+            yield _Beside(_Lines(console), terminal)
         return
-    with Live(console=console, refresh_per_second=10, transient=True) as live:
-        yield _Panel(live)
+    with Live(console=console, refresh_per_second=10, transient=True) as live, aside() as terminal:
+        yield _Beside(_Panel(live), terminal)
 
 
 def _summary(message: Message) -> str:

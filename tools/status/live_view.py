@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import time
 from contextlib import ExitStack
+from functools import partial
 
 from rich.console import Console, Group
 from rich.live import Live
 
+from tailor.runtime.aside import aside
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
 from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
@@ -47,7 +49,11 @@ class LiveView:
             run: BusRun | None = self._open(sessions)
             codec.prime()
             console = Console(highlight=False, markup=False)
-            with Keyboard() as keyboard, Live(console=console, screen=True, auto_refresh=False) as live:
+            with (
+                Keyboard() as keyboard,
+                Live(console=console, screen=True, auto_refresh=False) as live,
+                aside(most=1) as self._terminal,
+            ):
                 while run is not None and not self._watch(run, keyboard, live):
                     run = opened_anew(sessions, self._open, lambda: self._is_to_end(keyboard, live))
                 if run is None:  # it ended while a bus was waited for
@@ -99,7 +105,7 @@ class LiveView:
     def _draw(self, keyboard: Keyboard, live: Live) -> None:
         picture = self._model.picture(time.monotonic_ns())
         shown = (self._key.line(picture, keyboard.there), panel(picture, self._endpoint))
-        live.update(Group(*shown), refresh=True)
+        self._terminal.call(partial(live.update, Group(*shown), refresh=True))  # a key never waits for a terminal
 
     def _ended(self, keys: bytes) -> bool:
         return self._stop.requested or b"q" in keys

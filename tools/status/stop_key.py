@@ -10,7 +10,7 @@ from rich.text import Text
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.status.picture import Picture
 
-KEYS = frozenset(b"s ")
+KEYS = frozenset(b"s \x13")  # Ctrl-S, too: whoever presses it means s
 MAX_WAITING = 4  # presses that wait for an earlier one to be confirmed
 
 

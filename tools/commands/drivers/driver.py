@@ -9,8 +9,10 @@ from __future__ import annotations
 import argparse
 import secrets
 import sys
+from functools import partial
 
 from tailor.runtime import realtime
+from tailor.runtime.aside import aside
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
@@ -44,7 +46,11 @@ def run(arguments: argparse.Namespace) -> int:
     hardware = hardware_of(arguments.hardware, bus_settings(arguments).endpoint)
     spec = shipped_driver_spec(hardware.robot)
     end = BusEnd(arguments, stop_on_signals())
-    with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
+    with aside() as terminal, open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
+
+        def report(line: str) -> None:  # the guard's loop never waits for a terminal
+            terminal.call(partial(print, f"{hardware.robot}: {line}", file=sys.stderr, flush=True))
+
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
@@ -56,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
             epoch=1 + secrets.randbelow(2**62),
             leave=leave,
             retry=RetryPolicy(attempts=arguments.attempts),
-            report=lambda line: print(f"{hardware.robot}: {line}", file=sys.stderr, flush=True),
+            report=report,
         )
         code = 0 if node.run(lambda: end.reached(session), notifier) else 1
     end.check()
