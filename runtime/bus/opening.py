@@ -96,18 +96,19 @@ def open_client(
       keys: Key profile of a bus on another machine; on this machine the bus decides.
 
     Raises:
-      UnreachableError: No router responds within `timeout_s`.
+      UnreachableError: No router responds within `timeout_s`, or the one of this machine hangs.
       UsageError: The router refuses this user.
     """
     zenoh_config.check_endpoint(connect)
     folder, timeout_ms = run_folder(connect), int(timeout_s * 1000)
-    if identity is None and folder.running():
+    local = identity is None and folder.running()
+    if local:
         config, keys = _local_client(folder, role, timeout_ms), folder.key_profile()
     else:
         config = zenoh_config.client([connect], timeout_ms, identity=identity)
 
-    def explain(_: str) -> UsageError:
-        return _no_session(connect)
+    def explain(_: str) -> UsageError:  # a password that this user may read is that of the run
+        return _no_response(connect, timeout_s) if local else _no_session(connect)
 
     with _opened(config, explain, sender, keys, role) as session:
         yield session
@@ -144,6 +145,13 @@ def _start_threads(client: str) -> None:
     with suppress(CannotOpenError), opened(client):
         pass
     elevate_bus_threads()
+
+
+def _no_response(endpoint: str, timeout_s: float) -> UsageError:
+    return UnreachableError(
+        f"bus endpoint {endpoint}: its router runs here, but does not respond within {timeout_s:g} s: "
+        "it hangs or is stopped (Ctrl-Z); expected one that goes on"
+    )
 
 
 def _no_session(endpoint: str) -> UsageError:

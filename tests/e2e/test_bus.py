@@ -1,5 +1,7 @@
 """Sessions on a real router: errors in one line, services, foreign publications, reconnection, arrival times."""
 
+import os
+import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -10,8 +12,10 @@ import zenoh
 
 from tailor.runtime.bus.inbox import EVENT_DEPTH
 from tailor.runtime.bus.opening import open_client, open_router
+from tailor.runtime.bus.rights.run_folder import run_folder
+from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas import codec
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.messages import EStop, ExecStatus, Odometry, VelocityCommand
 from tailor.schemas.own import example
 from tailor.schemas.topics import TOPICS
@@ -39,6 +43,18 @@ def test_a_port_in_use_is_reported_in_one_line():
 def test_a_missing_router_is_reported_in_one_line():
     with pytest.raises(UsageError, match="no router responds"), open_client(free_endpoint(), timeout_s=0.3):
         pass
+
+
+def test_a_router_that_hangs_is_no_bus_of_another_user():
+    endpoint = free_endpoint()
+    bus = Child("bus", tailor("bus", "--connect", endpoint))
+    try:
+        wait_until(run_folder(endpoint).running, "bus")
+        os.kill(bus.pid, signal.SIGSTOP)
+        with pytest.raises(UnreachableError, match=r"runs here, but does not respond within 0\.5 s: it hangs"):
+            open_client(endpoint, timeout_s=0.5).__enter__()
+    finally:
+        bus.kill()
 
 
 @pytest.mark.parametrize("endpoint", ["", "7447", "tcp/localhost", "tcp/1.2.3.4:99999", "ftp/x:1", "tcp/a b:1"])
