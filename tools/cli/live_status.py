@@ -16,6 +16,7 @@ from rich.text import Text
 from tailor.runtime.aside import Aside, aside
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, ProcessStates, Subgoals, TickReport
 from tailor.schemas.reason_text import reason_text, result_text
+from tailor.tools.cli.plain_text import plain
 
 
 class Screen(Protocol):
@@ -41,7 +42,7 @@ class _Lines:
         self._console.print(line, highlight=False, markup=False, soft_wrap=True)  # a line stays one for its reader
 
     def show(self, message: Message) -> None:
-        line = _summary(message)
+        line = plain(_summary(message))
         if line and line != self._last:
             self._last = line
             self.report(line)
@@ -66,7 +67,7 @@ class _Panel:
             self._tick = message
         elif isinstance(message, ProcessStates):
             self._processes = message
-        elif isinstance(message, ActionFinished | PlanReport) and (line := _summary(message)):
+        elif isinstance(message, ActionFinished | PlanReport) and (line := plain(_summary(message))):
             self.report(line)
         self._live.update(self._table())
 
@@ -74,22 +75,28 @@ class _Panel:
         grid = Table.grid(padding=(0, 2))
         status, tick = self._status, self._tick
         if self._processes is not None:
-            grid.add_row("processes", processes_text(self._processes))
+            grid.add_row("processes", _text(processes_text(self._processes)))
         if status is None:
             grid.add_row("waiting for the executive")
             return grid
-        mode = Text(f"{status.mode} {reason_text(status.reason, status.detail)}".strip(), style=colour_of(status.mode))
+        mode = _text(f"{status.mode} {reason_text(status.reason, status.detail)}".strip(), colour_of(status.mode))
         grid.add_row("mode", mode)
         predicted = max(status.action_predicted_s, 0.1)
         if status.action:
             bar = ProgressBar(total=predicted, completed=min(status.action_elapsed_s, predicted), width=30)
-            grid.add_row("action", f"{status.action}  {status.action_elapsed_s:.1f} of {predicted:.1f} s predicted")
+            elapsed = f"{status.action_elapsed_s:.1f} of {predicted:.1f} s predicted"
+            grid.add_row("action", _text(f"{status.action}  {elapsed}"))
             grid.add_row("", bar)
         grid.add_row("belief", "  ".join(f"{value:6.2f}" for value in status.belief[:6]))
         if tick is not None:
             work, late = tick.work_ns / 1e6, tick.lateness_ns / 1e6
             grid.add_row("tick", f"{tick.tick}  work {work:.1f} ms  late {late:.2f} ms  checks {tick.checks_granted}")
         return grid
+
+
+def _text(line: str, style: str = "") -> Text:
+    """What comes from the bus: neither markup nor control characters."""
+    return Text(plain(line), style=style)
 
 
 COLOURS = {

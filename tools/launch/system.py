@@ -20,6 +20,7 @@ from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
@@ -144,7 +145,8 @@ class _System:
     def _take_result(self, status: ExecStatus) -> None:
         result = result_text(status.result, status.result_reason, status.result_detail)
         if result and result != self._result and not self._config.once:
-            self._screen.report(f'{result}. next: tailor goal "{status.goal}" pursues a goal; Ctrl-C stops the system')
+            line = f'{result}. next: tailor goal "{status.goal}" pursues a goal; Ctrl-C stops the system'
+            self._screen.report(plain(line))
         self._result = result
 
     def _poll(self, now_ns: int) -> None:
