@@ -8,8 +8,9 @@ import random
 import signal
 import subprocess
 import time
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -168,6 +169,23 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
     commands = [m for _, m in open_recording(path).decoded() if isinstance(m, VelocityCommand)]
     assert max(c.v for c in commands) > 0.2
     assert (commands[-1].v, commands[-1].omega) == (0.0, 0.0)
+
+
+@pytest.mark.xdist_group("live")
+def test_ctrl_c_while_the_simulator_starts_is_a_stop_and_no_failure():
+    flags = ("--seed", "1", "--no-scene", "--connect", free_endpoint())
+    up = subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    wait_until(lambda: b"\0sim\0" in b"".join(command_lines(up.pid)), "start of the simulator")
+    up.send_signal(signal.SIGINT)
+    printed, _ = up.communicate(timeout=PATIENCE_S)
+    assert (up.returncode, printed.splitlines()[-1]) == (0, "stopped")
+
+
+def command_lines(parent):
+    """Command lines of the children that have not ended."""
+    for pid in children_of(parent):
+        with suppress(OSError):
+            yield Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 LEAVE = "1e" * 16

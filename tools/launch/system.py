@@ -93,12 +93,12 @@ class _System:
         for gateway in gateways(config.bus):
             self._supervisor.start(gateway, time.monotonic_ns())
         if config.record is not None and not self._start(record_process(config, senders)):
-            return "failed: the recorder did not start"
+            return self._not_started("recorder")
         if config.scene:  # before the executive, so that it takes no time from its first ticks
             self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
         robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
         if not self._start(robot):
-            return f"failed: the {'driver' if config.hardware else 'simulator'} did not start"
+            return self._not_started("driver" if config.hardware else "simulator")
         self._supervisor.start(executive_process(config, senders), time.monotonic_ns())
         return self._supervise()
 
@@ -109,6 +109,10 @@ class _System:
             time.sleep(0.02)
             self._poll(time.monotonic_ns())
         return self._supervisor.state(spec.name) is State.RUNNING
+
+    def _not_started(self, what: str) -> str:
+        """Failure of a process, or "" if a stop was requested before it was ready."""
+        return "" if self._stop.requested else f"failed: the {what} did not start"
 
     def _supervise(self) -> str:
         loop = Loop(PERIOD_NS, MonotonicClock())
