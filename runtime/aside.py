@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
+
+from tailor.runtime.realtime import take_ordinary
 
 FINISH_S = 1.0  # a terminal that is stopped must not keep the process
 
@@ -40,8 +41,7 @@ class Aside:
         self._thread.join(FINISH_S)
 
     def _run(self) -> None:
-        with contextlib.suppress(OSError):  # a thread inherits the real-time priority of the one that starts it
-            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        take_ordinary()
         try:
             while not self._ended or self._waiting:
                 self._changed.wait()

@@ -98,6 +98,12 @@ def inherited_fifo(priority: int = BUS_PRIORITY) -> Iterator[None]:
         yield
 
 
+def take_ordinary() -> None:
+    """Schedule the calling thread as any other: it may have inherited the priority of the one that started it."""
+    with suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
 def take_fifo(priority: int) -> str:
     """Schedule the calling thread under SCHED_FIFO; returns what was granted."""
     try:

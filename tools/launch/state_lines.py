@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import threading
 from collections.abc import Callable, Iterator
 
+from tailor.runtime.aside import FINISH_S
+from tailor.runtime.realtime import take_ordinary
 from tailor.tools.cli.plain_text import plain
 
 PERIOD_S = 0.2
@@ -29,12 +30,11 @@ def state_lines(text: Callable[[], str], wanted: bool = True) -> Iterator[None]:
     finally:
         ended.set()
         if wanted:
-            thread.join(1.0)  # a terminal that is stopped must not keep the process
+            thread.join(FINISH_S)
 
 
 def _print(text: Callable[[], str], ended: threading.Event) -> None:
-    with contextlib.suppress(OSError):  # a thread inherits the real-time priority of the one that starts it
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    take_ordinary()
     last = ""
     while True:
         over = ended.wait(PERIOD_S)
