@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.given_options import given_options
 from tailor.tools.planning import options
 
 _SEARCH = {"--lifted": "ground", "-h": "heuristic", "-f": "orders", "-s": "search", "-w": "weight",
@@ -25,10 +26,6 @@ def refuse_ignored(args: argparse.Namespace) -> None:
 
 
 def _refuse(args: argparse.Namespace, planner: str, names: dict[str, str]) -> None:
-    """Refuse the options, option -> name of its value, whose values are not those of an empty command line."""
-    parser = argparse.ArgumentParser()
-    options.configure(parser)
-    defaults = parser.parse_args([])
-    given = [option for option, name in names.items() if getattr(args, name) != getattr(defaults, name)]
+    given = given_options(options.configure, args, names)
     if given:
         raise UsageError(f"{planner} does not use {', '.join(given)}: leave {'it' if len(given) == 1 else 'them'} out")

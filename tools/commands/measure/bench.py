@@ -13,6 +13,7 @@ from rich.console import Console
 from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.cli.extras import BENCHMARKS_NEED, require
+from tailor.tools.cli.given_options import given_options
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 
@@ -94,12 +95,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _refuse_ignored(arguments: argparse.Namespace, names: Sequence[str]) -> None:
-    """Raises UsageError for options, other than their defaults, that none of the benchmarks `names` uses."""
-    parser = argparse.ArgumentParser()
-    configure(parser)
-    defaults = parser.parse_args([])
-    given = [option for option in USED_BY if getattr(arguments, option) != getattr(defaults, option)]
-    for option in given:
+    """Raises UsageError for options that none of the benchmarks `names` uses."""
+    for option in given_options(configure, arguments, {option: option for option in USED_BY}):
         if not set(USED_BY[option]) & set(names):
             raise UsageError(f"--{option}: not used by {', '.join(names)}, only by {', '.join(USED_BY[option])}")
 
