@@ -14,9 +14,9 @@ from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages.scenes import FrameTransforms, LogLine, SceneShapes
-from tailor.schemas.messages.soccer import BallPercept
+from tailor.schemas.messages.soccer import BallPercept, OpponentPercept, OpponentPercepts
 from tailor.schemas.msg_definitions import field_types
-from tailor.schemas.numbers import MAX_NUMBER
+from tailor.schemas.numbers import MAX_FROM_ROBOT, MAX_NUMBER
 from tailor.schemas.own import example
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.ros_time import MAX_STAMP_NS
@@ -26,29 +26,29 @@ from tailor.schemas.typesystem import message_types
 
 MESSAGES = message_types()
 OWN = [kind for kind in MESSAGES if not kind.ROS_TYPE]
-FLOATS = st.floats(-MAX_NUMBER, MAX_NUMBER)
 PLAIN = {
-    float: FLOATS,
     int: st.integers(-(2**63), 2**63 - 1),
     bool: st.booleans(),
     str: st.text(max_size=20).filter(lambda text: "\0" not in text),
 }
 
 
-def values(name, hint):
+def values(name, hint, most):
     if name == "stamp_ns":
         return st.integers(0, MAX_STAMP_NS)
     if name.startswith("var_"):
         return st.floats(0.0, MAX_NUMBER)
-    if hint in PLAIN:
-        return PLAIN[hint]
+    plain = PLAIN | {float: st.floats(-most, most)}
+    if hint in plain:
+        return plain[hint]
     item = get_args(hint)[0]
-    return st.lists(PLAIN[item] if item in PLAIN else messages(item), max_size=4).map(tuple)
+    return st.lists(plain[item] if item in plain else messages(item, most), max_size=4).map(tuple)
 
 
 @cache
-def messages(kind):
-    return st.builds(kind, **{name: values(name, hint) for name, hint in field_types(kind).items()})
+def messages(kind, most=MAX_NUMBER):
+    most = MAX_FROM_ROBOT if getattr(kind, "FRAME_ID", "") == "base_link" else most
+    return st.builds(kind, **{name: values(name, hint, most) for name, hint in field_types(kind).items()})
 
 
 any_own = st.sampled_from(OWN).flatmap(messages)
@@ -161,6 +161,15 @@ def test_a_number_so_large_that_its_square_might_overflow_is_refused(kind, path,
     if path.endswith(COLOURS) and huge > 1e38:
         pytest.skip("a colour has 32 bits")
     assert decode(kind, encode(put(example(kind), huge))) == Rejected("number too large")
+
+
+@pytest.mark.promise("P19")
+def test_what_a_robot_measures_from_itself_is_no_farther_than_that_beliefs_can_be_reported():
+    assert decode(BallPercept, encode(BallPercept(0, 1.0, 1e7, 0.1, 0.1, 0.0))) == Rejected("number too large")
+    opponent = OpponentPercept(-1e7, 0.0, 0.1, 0.1, 0.1, 0.0)
+    assert decode(OpponentPercepts, encode(OpponentPercepts(0, (opponent,)))) == Rejected("number too large")
+    unknown = BallPercept(0, 1.0, -1e6, 1e12, 1e12, 1e12)
+    assert decode(BallPercept, encode(unknown)) == unknown
 
 
 @pytest.mark.parametrize(
