@@ -14,6 +14,7 @@ from tailor.runtime.loop import Loop
 from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.supervised import ProcessSpec, State
 from tailor.runtime.processes.supervisor import Supervisor
+from tailor.runtime.recordings.new_file import EXISTS
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
@@ -50,7 +51,7 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
       UsageError: Bad configuration; no process has been started.
     """
     if config.record is not None and config.record.exists():
-        raise UsageError(f"{config.record}: exists already, expected the name of a new file")
+        raise UsageError(EXISTS.format(config.record))
     build_context(config.executive, sender="")  # reports all that is wrong with it
     with (
         hosted_bus(config.bus, screen.report) as session,

@@ -23,6 +23,7 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
+from tailor.runtime.recordings.new_file import EXISTS
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
@@ -129,7 +130,7 @@ def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selecti
             return SnapshotRecorder(path, queue, wanted, SnapshotBuffer(round(arguments.snapshot * 1e9)), metadata)
         return Recorder(path, queue, wanted, limits, metadata)
     except FileExistsError as error:
-        raise UsageError(f"{error.filename or path}: exists already, expected the name of a new file") from error
+        raise UsageError(EXISTS.format(error.filename or path)) from error
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a writable path") from error
 
