@@ -9,6 +9,7 @@ from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate, nominal_rates_hz
+from tailor.simnodes.driver import command_values
 from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
 
 MIN_FRESH = 2  # messages of a sensor before it is stale, so that it may lose one
@@ -63,7 +64,20 @@ def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
             for axis, limit in zip(domain.axes, driver.limits, strict=True)
             if axis.kept != limit.kept
         ]
+    if not mismatches:
+        mismatches += _misread(domain, driver)
     return [*mismatches, *_unfit_rates(domain, driver)]
+
+
+def _misread(domain: Domain, driver: DriverSpec) -> Iterator[str]:
+    """Outlets whose messages the driver reads otherwise than the domain writes them, e.g. with two axes exchanged."""
+    for outlet, declared in zip(outlets_of(domain), driver.all_outlets(), strict=True):
+        ranges, parts = [(axis.lower, axis.upper) for axis in outlet.axes], len(outlet.axes) + 2
+        written = tuple(lower + (upper - lower) * (k + 1) / parts for k, (lower, upper) in enumerate(ranges))
+        read = command_values(outlet.message(written, 0), declared.axes)
+        if read != written:
+            said, heard = (", ".join(f"{value:g}" for value in values) or "nothing" for values in (written, read))
+            yield f"{outlet.topic} carries {said} for {', '.join(declared.axes)}, and the driver reads {heard}"
 
 
 def _unfit_rates(domain: Domain, driver: DriverSpec) -> Iterator[str]:

@@ -8,8 +8,10 @@ from importlib import resources
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.interfaces.domain import Axis
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
+from tailor.schemas.messages import VelocityCommand
 from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
@@ -28,6 +30,47 @@ def test_all_mismatches_are_reported_at_once():
         check_driver(domains.load("soccer"), slow)
     assert "publishes cmd_vel, the driver expects joint_cmd" in str(caught.value)
     assert "v ranges from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
+
+
+AXES = {"v": Axis("v", "m/s", -0.5, 0.5), "omega": Axis("omega", "rad/s", -1.5, 1.5)}
+
+
+class Rover:
+    """A domain that says the right thing in cmd_vel, whatever the order of its axes."""
+
+    def __init__(self, *names):
+        soccer = domains.load("soccer")
+        self.name, self.robot, self.required, self.command_topic = "rover", "rover", soccer.required, "cmd_vel"
+        self.axes = tuple(AXES[name] for name in names)
+
+    def message(self, command, stamp_ns):
+        said = dict(zip((axis.name for axis in self.axes), command, strict=True))
+        return VelocityCommand(stamp_ns, said["v"], said.get("omega", 0.0))
+
+
+def of(domain):
+    """The driver with the same axes."""
+    limits = tuple(Limit(axis.lower, axis.upper) for axis in domain.axes)
+    axes = tuple(axis.name for axis in domain.axes)
+    return dataclasses.replace(shipped_driver_spec("agilo"), axes=axes, limits=limits)
+
+
+def test_a_driver_that_reads_each_axis_from_its_place_is_accepted():
+    rover = Rover("v", "omega")
+    check_driver(rover, of(rover))
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("omega", "v"), "cmd_vel carries -0.75, 0 for omega, v, and the driver reads 0, -0.75"),
+        (("v",), "cmd_vel carries -0.166667 for v, and the driver reads -0.166667, 0"),
+    ],
+)
+def test_a_driver_that_reads_another_axis_than_was_written_is_refused(names, expected):
+    rover = Rover(*names)
+    with pytest.raises(UsageError, match=expected):
+        check_driver(rover, of(rover))
 
 
 def sensing(**rates_hz):
