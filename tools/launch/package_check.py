@@ -13,6 +13,7 @@ from tailor.executive import domains, planning
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain, kept_at
 from tailor.executive.interfaces.outlet import outlets_of
+from tailor.executive.refinement.assertion.asserted_subgoal import goal_indices, start_indices
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of
 from tailor.schemas.packages.spec import DomainSpec
@@ -95,8 +96,9 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
     yield from _faults_of_context(action)
     outlets = {outlet.name for outlet in outlets_of(domain)}
     yield from (f"drives '{name}', which is none of outlets" for name in action.drives if name not in outlets)
-    if action.subgoal_action and action.subgoal_action not in domain.actions:
-        yield f"subgoal_action is '{action.subgoal_action}', which is none of actions"
+    yield from _faults_of_subgoal(domain, action)
+    if not action.parameters:
+        yield "parameters is empty, expected at least one: models and progress of an action are about its parameters"
     names = [parameter.name for parameter in action.parameters]
     yield from (f"parameter '{name}' occurs twice" for name in sorted({n for n in names if names.count(n) > 1}))
     for parameter in action.parameters:
@@ -104,6 +106,24 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
             math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower <= parameter.upper
         ):
             yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
+
+
+def _faults_of_subgoal(domain: Domain, action: Action) -> Iterator[str]:
+    """Faults of the action that leads to a subgoal: it starts where this one would, so it needs no more to be known."""
+    if not action.subgoal_action:
+        return
+    leading = domain.actions.get(action.subgoal_action)
+    if leading is None:
+        yield f"subgoal_action is '{action.subgoal_action}', which is none of actions"
+    elif action.parameters and leading.parameters:
+        known = {action.parameters[j].quantity for j in start_indices(action)}
+        goals = goal_indices(leading)
+        for parameter in (each for j, each in enumerate(leading.parameters) if j not in goals):
+            if parameter.quantity not in known:
+                yield (
+                    f"subgoal_action '{leading.name}' begins with the quantity '{parameter.quantity}', "
+                    f"expected one of this action's first label: {', '.join(sorted(known))}"
+                )
 
 
 def _faults_of_context(action: Action) -> Iterator[str]:

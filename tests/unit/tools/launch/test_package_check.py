@@ -46,6 +46,11 @@ FAULTS = {
     "actions['goToPose']: duration_model is '', expected": lambda: changed(duration_model=""),
     "success_model is 'goToPose/luck'": lambda: changed(success_model="goToPose/luck"),
     "subgoal_action is 'fly'": lambda: changed(subgoal_action="fly"),
+    "actions['dribbleBall']: parameters is empty": lambda: changed("dribbleBall", parameters=()),
+    "actions['goToPose']: parameters is empty": lambda: changed(parameters=()),
+    "subgoal_action 'goToPose' begins with the quantity 'x', expected one of this action's first label: v": lambda: (
+        changed("approachBall", parameters=domains.load("soccer").actions["approachBall"].parameters[3:])
+    ),
     "occurs twice": lambda: changed(parameter={"name": domains.load("soccer").actions["goToPose"].parameters[1].name}),
     "ranges from nan to": lambda: changed(parameter={"lower": NAN}),
 }
