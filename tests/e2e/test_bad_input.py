@@ -160,6 +160,13 @@ def test_missing_model_file(zoo):
     assert "goToPose/duration" in refused("up", "soccer", "--zoo", zoo)
 
 
+def test_model_that_was_never_made(zoo):
+    for file in (zoo / "agilo/approachBall").glob("success.*"):
+        file.unlink()
+    line = refused("executive", "soccer", "--zoo", zoo)
+    assert "action approachBall needs the model approachBall/success" in line
+
+
 def test_altered_model_file(zoo):
     path = zoo / "agilo/dribbleBall/duration.onnx"
     data = bytearray(path.read_bytes())

@@ -27,6 +27,7 @@ from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
+from tailor.tools.launch.model_check import check_models
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.recordings.recorded_source import source_entry
@@ -53,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     config = executive_config(arguments.domain, deployment)
     check_package(arguments.domain)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
+    check_models(context)
     driver = driver_of(context.domain.robot, arguments.driver)
     check_driver(context.domain, driver)
     context = replace(context, sensor_rates_hz=sensor_rates_hz(context.domain, driver))
