@@ -15,6 +15,9 @@ from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
+MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
+MAX_FAILURES = 10  # of whatever cause, without a success between them: controllers may name a measured value in each
+
 
 def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     """Advance the running action, or start the first action of the decision, and set the command.
@@ -104,16 +107,41 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
 def _done(context: Context, state: State, running: Running) -> tuple[State, ActionFinished]:
     finished = finished_message(context, state, state.task.finished, running, ("done", None))
     task = _with_effects(context, replace(after_action(state.task), failures=()), running)
-    return replace(state, task=task, deliberation=None, coasted=0), finished
+    return _confirmed(context, replace(state, task=task, deliberation=None, coasted=0), running), finished
+
+
+def _confirmed(context: Context, state: State, running: Running) -> State:
+    """Note whether the effects of an action that is done are observed; a fault if they never are.
+
+    The plan is then the same again: an action whose effects cannot be observed would be repeated for ever.
+    """
+    task = state.task
+    action = task.plan.action_of(running.step) if task.plan is not None and not running.asserted else None
+    if action is None:
+        return state
+    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    missing = planning.apply_action(context.pddl_domain, context.problem, facts, action) - facts
+    if not missing:
+        others = tuple(each for each in task.unconfirmed if each != action)
+        return replace(state, task=replace(task, unconfirmed=others))
+    unconfirmed = (*task.unconfirmed, action)
+    fault = None
+    if (count := unconfirmed.count(action)) >= MAX_UNCONFIRMED:
+        fact = " ".join(min(missing))
+        fault = Cause(Reason.REPEATED_FAILURE, f"{' '.join(action)}: done {count} times, and ({fact}) is not observed")
+    return replace(state, task=replace(task, unconfirmed=unconfirmed), fault=fault)
 
 
 def _failed(context: Context, state: State, running: Running, cause: Cause) -> tuple[State, ActionFinished]:
-    """Zero command, no plan; a fault if the action has failed so before."""
+    """Zero command, no plan; a fault if the action has failed so before, or if nothing has succeeded for long.
+
+    Time limits vary with the start, so their values do not count.
+    """
     finished = finished_message(context, state, state.task.finished, running, ("failed", cause))
-    failure = (running.action.name, cause)
+    failure = (running.action.name, Cause(cause.reason) if cause.reason is Reason.ACTION_TIMEOUT else cause)
     failures = (*state.task.failures, failure)
     fault = None
-    if failures.count(failure) >= context.settings.replan_failures:
+    if failures.count(failure) >= context.settings.replan_failures or len(failures) >= MAX_FAILURES:
         fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
     task = replace(after_action(state.task), failures=failures, plan=None, done=frozenset())
     zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks

@@ -61,7 +61,7 @@ def _undertaking(plan: planning.Plan, step: int, running: Running) -> planning.F
     """The ground action of a step without the label of its start: a robot on its way is no longer there."""
     action = plan.action_of(step)
     arguments = {parameter.argument for parameter in running.action.parameters}
-    if action is None or len(arguments) == 1:
+    if action is None or len(arguments) <= 1:
         return action
     start = 1 + min(arguments)
     return (*action[:start], *action[start + 1 :])

@@ -63,6 +63,7 @@ class Task:
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
     failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since the last success
+    unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them
     running: Running | None = None
     decision: Decision | None = None  # of the last deliberation
     external_failed: bool = False  # the external planner gets no more requests for this goal

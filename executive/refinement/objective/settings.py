@@ -8,12 +8,15 @@ from typing import Literal
 
 from tailor.schemas.errors import UsageError
 
-COUNTS = ("horizon", "batch", "patience", "checks_max", "greedy_checks", "assertion_samples", "comparison_checks")
+COUNTS = (
+    "horizon", "patience", "checks_max", "greedy_checks", "assertion_depth", "assertion_samples", "comparison_checks",
+)  # fmt: skip
 NOT_NEGATIVE = (
-    "k_std", "risk_cost_s", "gain_min_s", "gain_k_std", "worth_s", "energy_weight", "assertion_depth", "certify_checks",
+    "k_std", "risk_cost_s", "gain_min_s", "gain_k_std", "worth_s", "energy_weight", "certify_checks",
     "certify_gap_pct",
 )  # fmt: skip
 PROBABILITIES = ("p_fail_max", "p_fail_assert", "p_fail_settle")
+MIN_BATCH = 8  # candidates of a few kinds, at least one of each
 MAX_ROWS = 1_000_000  # model inputs in one call, for each parameter: more exceed the memory
 # From 150 arrivals of AGILO's goToPose: 5 cm and 3 degrees; other robots have no parameters of these quantities
 ARRIVAL_SPREAD = (("x", 0.05), ("y", 0.05), ("phi", 0.05), ("v", 0.05))
@@ -57,6 +60,7 @@ class RefinementSettings:
     def __post_init__(self) -> None:
         for name in COUNTS:
             self._require(name, getattr(self, name) >= 1, "at least 1")
+        self._require("batch", self.batch >= MIN_BATCH, f"at least {MIN_BATCH}")
         for name in ("batch", "assertion_samples"):
             self._require(name, getattr(self, name) <= MAX_ROWS, f"at most {MAX_ROWS}")
         for quantity, deviation in self.arrival_spread:

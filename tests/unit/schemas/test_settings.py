@@ -29,6 +29,11 @@ def test_nested_tables_become_nested_settings():
         ({"executive": {"seed": "x"}}, "f.toml: 'executive.seed' is 'x', expected int"),
         ({"executive": {"seed": True}}, "f.toml: 'executive.seed' is True, expected int"),
         ({"executive": {"refinement": {"horizon": 0}}}, "f.toml: refinement.horizon is 0, expected at least 1"),
+        ({"executive": {"refinement": {"batch": 1}}}, "f.toml: refinement.batch is 1, expected at least 8"),
+        (
+            {"executive": {"refinement": {"assertion_depth": 0}}},
+            "f.toml: refinement.assertion_depth is 0, expected at least 1",
+        ),
         ({"executive": {"seed": -1}}, "f.toml: executive.seed is -1, expected at least 0"),
         ({"executive": {"adopt_gain_s": float("nan")}}, "f.toml: executive.adopt_gain_s is nan, expected at least 0"),
         ({"executive": {"overruns_to_hold": 0}}, "f.toml: executive.overruns_to_hold is 0, expected at least 1"),

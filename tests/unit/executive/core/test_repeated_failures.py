@@ -1,0 +1,70 @@
+"""Whatever an action fails of, it is not repeated for ever."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from tailor.executive.core.action_cycle import MAX_FAILURES, MAX_UNCONFIRMED
+from tailor.executive.core.modes import Mode
+from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.schemas.messages import ActionFinished
+from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context
+from tests.unit.executive.core.test_core import TICK, drive, messages
+
+
+def of(domain):
+    return dataclasses.replace(line_context(), domain=domain)
+
+
+class Complaining(LineDomain):
+    """Gives up at once, for another reason each time."""
+
+    def __init__(self):
+        slide = dataclasses.replace(SLIDE, controller=self.give_up)
+        self.actions = {"slide": slide}
+
+    def give_up(self, state, now_ns, belief, arguments):
+        return Control(state, (0.0,), "failed", f"at {now_ns} ns")
+
+
+@pytest.mark.promise("P30")
+def test_time_outs_of_one_action_are_one_failure_whatever_their_limits_were():
+    def stuck(n, given, x):
+        return inputs(n * TICK, 1.0 * (n > 200), given.goal)  # the second attempt starts nearer, and gets less time
+
+    context = line_context(places={"home": {"x": 0.0}, "a": {"x": 4.0}, "b": {"x": 5.0}})
+    run = list(drive(context, goal="(visited a)", world=stuck, ticks=460))
+    finished = messages(run, ActionFinished)
+    assert len({f.detail for f in finished}) == len(finished) == 2
+    assert run[-1][0].mode is Mode.FAULT
+
+
+@pytest.mark.promise("P30")
+def test_failures_that_each_name_another_value_are_a_fault_in_the_end():
+    run = list(drive(of(Complaining()), goal="(visited a)", ticks=60))
+    finished = messages(run, ActionFinished)
+    assert len(finished) == len({f.detail for f in finished}) == MAX_FAILURES
+    assert run[-1][0].mode is Mode.FAULT
+
+
+class Forgetful(LineDomain):
+    """Never observes that a place was visited."""
+
+    def anchor(self, belief, scenario, remembered):
+        return frozenset(fact for fact in remembered if fact[0] != "visited")
+
+
+@pytest.mark.promise("P30")
+def test_an_action_whose_effect_is_never_observed_is_a_fault_and_not_repeated_for_ever():
+    run = list(drive(of(Forgetful()), goal="(visited a)", ticks=400))
+    finished = messages(run, ActionFinished)
+    assert {f.outcome for f in finished} == {"done"}
+    state = run[-1][0]
+    assert state.mode is Mode.FAULT
+    assert state.cause == Cause(
+        Reason.REPEATED_FAILURE, f"slide a a: done {MAX_UNCONFIRMED} times, and (visited a) is not observed"
+    )
+    assert state.command == (0.0,)
