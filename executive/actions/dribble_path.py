@@ -106,7 +106,8 @@ class DribblePath:
         peak = math.sqrt((2.0 * up * down * length + down * v * v + up * v_end * v_end) / (up + down))
         peak = max(v, v_end, min(self.v_max_mps, peak))
         changing = (peak * peak - v * v) / (2.0 * up) + (peak * peak - v_end * v_end) / (2.0 * down)
-        return (peak - v) / up + (peak - v_end) / down + max(0.0, length - changing) / peak
+        steady_s = (length - changing) / peak if length > changing else 0.0  # at rest on the goal, peak is 0
+        return (peak - v) / up + (peak - v_end) / down + steady_s
 
     def _end(self, goal: tuple[float, ...], slant: float, aside: float) -> Pose2:
         """Start pose of the run-out: the ball ends at its place at the goal, or beside it."""

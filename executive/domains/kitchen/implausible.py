@@ -17,6 +17,7 @@ MAX_TURN_RAD = math.tau  # of a direction or a tilt, in whatever range a detecto
 MAX_CUP_M = 3.0  # height or depth of a cup: a hand lifts it to 1.2 m
 TOP_M = 0.3  # by which the top of furniture may be misjudged: ten times the noise at 5 m
 LEAN_RAD = 0.5  # beyond it furniture has fallen, and stands on another outline than all clearances count with
+FAR_M = 20.0  # more than twice the kitchen's diagonal
 TABLE_M = 1.0  # of a table from its place on the map: six times the displacement that it is drawn with
 
 
@@ -31,6 +32,8 @@ def _fault(belief: KitchenBelief, percept: ObjectPercept) -> str:
     is_cup, is_table = percept.name in kitchen().cups, percept.name in kitchen().tables
     if not is_cup and not is_table and percept.name != "stool":
         return ""  # a detector finds other things too
+    if (away_m := math.hypot(percept.x, percept.y)) > FAR_M:
+        return f"{away_m:g} m away"
     if abs(percept.phi) > MAX_TURN_RAD:
         return f"turned by {percept.phi:g} rad"
     if abs(percept.tilt) > (MAX_TURN_RAD if is_cup else LEAN_RAD):

@@ -55,7 +55,13 @@ def mapped_label(scenario: Scenario, cup: str) -> str | None:
 
 
 def spot_of(belief: KitchenBelief, scenario: Scenario, label: str) -> Spot:
-    """The believed spot of a place without a cup."""
+    """The believed spot of a place without a cup.
+
+    Raises:
+      Conflict: The place has none, e.g. that from which the robot started: a goal may ask the arm to reach there.
+    """
+    if label not in spots(scenario):
+        raise Conflict(f"{label} has no spot for a cup")
     name, slot = spots(scenario)[label]
     table = table_place(belief, name)
     x, y, _ = on_table(table, *kitchen().table.slots[slot])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.domains.soccer import balls, opponents, predicates
+from tailor.executive.domains.soccer import balls, implausible, opponents, predicates
 from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.soccer.belief import SoccerBelief
@@ -59,6 +59,10 @@ class SoccerDomain:
     def ready(self, belief: SoccerBelief) -> bool:
         """Whether the pose has settled, the ball was looked for long enough, and opponents were looked for lately."""
         return believing.ready(belief)
+
+    def measurement_fault(self, belief: SoccerBelief, message: Message) -> str:
+        """Why a message of a sensor is no measurement, see soccer.implausible."""
+        return implausible.fault(message)
 
     def relocations(self, belief: SoccerBelief) -> int:
         """How often the robot was moved by others."""

@@ -136,3 +136,9 @@ def test_a_dribble_that_begins_with_a_circle_is_driven_as_it_was_chosen():
     state = dribble(None, robot.IN_RAIL_M + 0.05, BEYOND).state
     assert (state.stage, state.far) == ("chase", False)
     assert isinstance(dribble(state, robot.IN_RAIL_M + 0.01, BEYOND).state, Pushing)
+
+
+@pytest.mark.parametrize("past_m", [0.0, 0.1, 0.2])
+def test_a_robot_at_rest_at_its_goal_or_a_little_past_it_has_nothing_left_to_divide_by(past_m):
+    there = np.array([0.0, 0.0, 0.0, 0.0, -past_m, 0.0, 0.0, 0.0])
+    assert dribble(None, robot.IN_RAIL_M, there, v=0.0).outcome == "done"

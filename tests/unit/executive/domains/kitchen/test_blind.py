@@ -41,6 +41,8 @@ def changed(thing, **fields):
 
 
 IMPOSSIBLE = [
+    (changed(STOOL, x=-12.0, y=16.1), "has stool 20.0801 m away"),
+    (changed(CUP, x=1e5), "has cup1 100000 m away"),
     (changed(CUP, z=3.1), "has cup1 at a height of 3.1 m"),
     (changed(CUP, z=-3.1), "has cup1 at a height of -3.1 m"),
     (changed(CUP, tilt=-6.3), "has cup1 tilted by -6.3 rad"),
@@ -54,6 +56,7 @@ IMPOSSIBLE = [
     (changed(STOOL, tilt=-0.6), "has stool tilted by -0.6 rad"),
 ]
 POSSIBLE = [
+    changed(STOOL, x=-19.0, y=0.0),
     changed(CUP, z=2.9, phi=6.2, tilt=math.pi),
     changed(CUP, z=0.04, tilt=1.6),
     changed(TABLE, y=TABLE.y + 0.99, z=1.0, tilt=0.49),

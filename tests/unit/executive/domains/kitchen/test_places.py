@@ -70,9 +70,10 @@ def test_where_a_cup_may_be_put_is_free():
     assert spot.upper - spot.lower > 0.05
 
 
-def planned(domain, task):
+def planned(domain, task, goal=""):
     pddl = planning.parse_domain(domain.pddl)
-    search = planning.Search(pddl, planning.parse_problem(task.problem, pddl), planning.DEFAULT)
+    problem = planning.parse_problem(task.problem, pddl)
+    search = planning.Search(pddl, problem.with_goal(goal) if goal else problem, planning.DEFAULT)
     return search.advance(CheckBudget(100_000)).plan
 
 
@@ -86,6 +87,14 @@ def test_one_cup_leaves_ten_parameters_free():
 
 def test_two_cups_take_thirteen_actions():
     assert len(planned(domains.load("kitchen"), scenario("two-cups")).steps) == 13
+
+
+@pytest.mark.parametrize("goal", ["(arm-out)", "(open dock)"])
+def test_a_goal_for_the_arm_at_a_place_without_a_spot_fails_and_says_why(goal):
+    """It ended the executive."""
+    task, domain = scenario(), domains.load("kitchen")
+    failure = instantiate(planned(domain, task, goal), domain, believed(), task)
+    assert failure.reason == "reach dock: dock has no spot for a cup"
 
 
 REMEMBERED = frozenset({("robot-at", "table1"), ("cup-at", "cup1", "table1"), ("hand-empty",), ("arm-home",)})
