@@ -107,8 +107,9 @@ class Driver:
         if current == self._published and now_ns < self._due_ns:
             return None
         self._published = current
-        next_ns = self._due_ns + STATE_PERIOD_NS  # counted from due time to due time: the node's periods add no delay
-        self._due_ns = next_ns if next_ns > now_ns else now_ns + STATE_PERIOD_NS
+        if now_ns >= self._due_ns:  # a change in between moves no due time: a few of them would silence the driver
+            next_ns = self._due_ns + STATE_PERIOD_NS  # from due time to due time: the node's periods add no delay
+            self._due_ns = next_ns if next_ns > now_ns else now_ns + STATE_PERIOD_NS
         refused = self._refused()
         return DriverState(
             stamp_ns=stamp_ns,

@@ -119,7 +119,8 @@ class Device:
         self._close()
 
     def _work(self) -> None:
-        self.fault, self._handed_ns = "", self._clock.now_ns()
+        self.fault, self._values = "", self._standstill()  # nothing from before the fault, should the loop hang
+        self._handed_ns = self._clock.now_ns()
         self._readings.clear()
         self.phase = Phase.RUNNING
         threads = [threading.Thread(target=each, daemon=True) for each in (self._read, self._write)]
@@ -142,6 +143,8 @@ class Device:
     def _read(self) -> None:
         def take() -> None:
             measured = self._hardware.read()
+            if measured and not isinstance(measured, Mapping):
+                raise TypeError(f"returned {type(measured).__name__}, expected messages by topic")
             if measured:
                 self._readings.append((self._clock.now_ns(), measured))
             else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -10,6 +11,8 @@ from types import ModuleType
 
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.hardware.interface import Hardware
+
+POSITIVE = ("write_hz", "open_s", "read_s", "write_s")  # of a Hardware
 
 
 def load_hardware(named: str) -> Hardware:
@@ -33,6 +36,9 @@ def load_hardware(named: str) -> Hardware:
         raise UsageError(f"{named}: {error}, expected a class that is made without arguments") from error
     if not hardware.robot:
         raise UsageError(f"{named}: robot is empty, expected the name of the robot")
+    for name in POSITIVE:
+        if not (math.isfinite(value := getattr(hardware, name)) and value > 0.0):
+            raise UsageError(f"{named}: {name} is {value}, expected a finite number above 0")
     return hardware
 
 

@@ -121,8 +121,8 @@ class PlainRobot(Hardware):
         if isinstance(message, Odometry):
             if jump := self._tracker.move(message):
                 raise ValueError(f"{key}: {jump}; the pose is unknown until the localiser speaks")
-        elif isinstance(message, PoseEstimate):
-            self._tracker.correct(message)
+        elif isinstance(message, PoseEstimate) and (fault := self._tracker.correct(message)):
+            raise ValueError(f"{key}: {fault}")
         return True
 
     def _pose(self, now_ns: int) -> dict[str, Message]:

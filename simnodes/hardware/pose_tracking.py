@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from tailor.schemas.messages import Odometry, PoseEstimate
 
 JUMP_M, JUMP_MPS = 0.5, 10.0  # a longer step of the odometry than both together is none that a robot has made
+APART_NS = 500_000_000  # between a pose of the localiser and the odometry of its time, if the robot has moved since
+STOOD_M, STOOD_RAD = 0.02, 0.02  # odometry of a standing robot may creep by so much
 HISTORY = 256  # odometry that is kept for a late localiser: 5 s at 50 Hz
 Planar = tuple[float, float, float]
 
@@ -83,17 +85,30 @@ class PoseTracker:
         step_m, passed_s = math.dist(last[:2], (odometry.x, odometry.y)), 1e-9 * max(0, odometry.stamp_ns - stamp_ns)
         return f"jumped by {step_m:.1f} m" if step_m > JUMP_M + JUMP_MPS * passed_s else ""
 
-    def correct(self, seen: PoseEstimate) -> None:
-        """Take a pose of the localiser, valid at its stamp; without odometry it is ignored."""
+    def correct(self, seen: PoseEstimate) -> str:
+        """Take a pose of the localiser, valid at its stamp; without odometry it is ignored.
+
+        Returns:
+          Text if no odometry is of its time and the robot has moved since: the pose is then ignored.
+        """
         if not self._history:
-            return
-        near = (
-            min(self._history, key=lambda entry: abs(entry[0] - seen.stamp_ns)) if seen.stamp_ns else self._history[-1]
-        )
+            return ""
+        near = self._history[-1]
+        if seen.stamp_ns and near[0]:  # else a stamp is missing: the newest odometry
+            near = min(self._history, key=lambda entry: abs(entry[0] - seen.stamp_ns))
+        apart_ns = abs(near[0] - seen.stamp_ns) if seen.stamp_ns and near[0] else 0
+        if apart_ns > APART_NS and not self._stands():
+            return f"is {apart_ns * 1e-9:.1f} s from any odometry, expected stamps of one clock"
         _, pose, distance_m, turned_rad = near
         self._to_map = composed((seen.x, seen.y, seen.phi), inverse(pose))
         self._variances, self._since = (seen.var_x, seen.var_y, seen.var_phi), (distance_m, turned_rad)
         self.known = True
+        return ""
+
+    def _stands(self) -> bool:
+        """Whether the robot has stood for as long as odometry is kept: a pose of before still holds."""
+        (_, _, distance_m, turned_rad), (*_, far_m, far_rad) = self._history[0], self._history[-1]
+        return far_m - distance_m < STOOD_M and far_rad - turned_rad < STOOD_RAD
 
     def pose(self) -> PoseEstimate | None:
         """The pose at the newest odometry; None if it is not known."""

@@ -10,6 +10,7 @@ from tailor.runtime.clock import MonotonicClock
 from tailor.schemas.messages import ArmRequest, EStop, Odometry, PoseEstimate, Sample, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
 from tailor.simnodes.guard import ArmRefusal, Limit
+from tailor.simnodes.hardware.device import Device
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
 from tests.support.patience import wait_until
@@ -196,6 +197,28 @@ def test_a_measurement_of_another_type_is_a_fault(robot):
     driven.drive()
     driven.hardware.odometry = {"odom": PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0)}
     stopped_for(driven, "odom is no Odometry")
+
+
+def test_what_a_read_returns_that_is_no_mapping_is_a_fault(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = [1, 2]
+    stopped_for(driven, "read: TypeError: returned list, expected messages by topic")
+
+
+def test_after_a_fault_nothing_from_before_it_is_written_even_if_the_loop_hangs():
+    hardware = Faulty()
+    device = Device(hardware, SPEC.limits, RetryPolicy(first_s=0.05, most_s=0.05), MonotonicClock())
+    device.start()
+    wait_until(lambda: hardware.written, "the first set-point", 5)
+    device.hand((0.5, 0.1), MonotonicClock().now_ns())
+    wait_until(lambda: hardware.written[-1] == (0.5, 0.1), "motion", 5)
+    hardware.raises = {"read"}  # and nobody hands set-points any more
+    wait_until(lambda: hardware.calls["open"] > 1, "open again", 5)
+    hardware.raises, hardware.written = set(), []
+    wait_until(lambda: len(hardware.written) > 3, "set-points", 5)
+    assert set(hardware.written) == {(0.0, 0.0)}
+    assert device.end()
 
 
 @pytest.mark.parametrize(

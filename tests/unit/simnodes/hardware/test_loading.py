@@ -5,6 +5,7 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.hardware.loading import load_hardware
 from tests.support.bus_system import ROOT
+from tests.unit.simnodes.hardware.faulty import Faulty
 
 WRONG = {
     "no_such_module:Rover": "No module named",
@@ -14,7 +15,14 @@ WRONG = {
     "Rover": r"^Rover: expected FILE\.toml, package\.module:Class or FILE\.py:Class$",
     ":Rover": "expected FILE",
     "tailor.simnodes.hardware.interface:Hardware": "robot is empty",
+    f"{__name__}:NeverWriting": r"write_hz is 0\.0, expected a finite number above 0",
 }
+
+
+class NeverWriting(Faulty):
+    """Its writer would divide by zero."""
+
+    write_hz = 0.0
 
 
 def test_a_class_is_found_in_a_file_and_in_a_module():

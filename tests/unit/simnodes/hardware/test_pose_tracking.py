@@ -80,3 +80,33 @@ def test_odometry_that_jumps_makes_the_pose_unknown_until_the_localiser_speaks(s
     assert (tracker.pose() is None) is jumps, "nor is it at its start again"
     tracker.correct(seen(1.1 + passed_s, 3.0, 3.0, 1.0))
     near(tracker.pose(), (3.0, 3.0, 1.0))
+
+
+def driven(stamped=True, seconds=10, mps=0.5):
+    """A tracker of a robot that drives along x, with odometry ten times a second."""
+    tracker = PoseTracker(None, Drift())
+    for k in range(10 * seconds):
+        tracker.move(odometry(k / 10 + 100 if stamped else 0, k / 10 * mps, 0.0, 0.0))
+    return tracker
+
+
+def test_odometry_without_stamps_is_that_of_now():
+    tracker = driven(stamped=False)
+    assert tracker.correct(seen(7.0, 20.0, 0.0, 0.0)) == ""
+    near(tracker.pose(), (20.0, 0.0, 0.0))
+
+
+def test_a_pose_of_another_clock_is_ignored_while_the_robot_drives():
+    """Taken for the oldest odometry that is kept, it was metres behind."""
+    tracker = driven(seconds=60)
+    assert tracker.correct(seen(160.1, 20.0, 0.0, 0.0)) == ""
+    assert tracker.correct(seen(100.0, 99.0, 0.0, 0.0)) == ("is 34.4 s from any odometry, expected stamps of one clock")
+    assert tracker.correct(seen(200.0, 99.0, 0.0, 0.0)) != ""
+    assert tracker.pose().x == pytest.approx(20.0, abs=0.1)
+
+
+def test_a_pose_from_before_all_odometry_holds_for_a_robot_that_has_stood_since():
+    """A localiser's last pose is kept for drivers that start later."""
+    tracker = driven(mps=0.0)
+    assert tracker.correct(seen(1.0, 5.0, 6.0, 1.0)) == ""
+    near(tracker.pose(), (5.0, 6.0, 1.0))
