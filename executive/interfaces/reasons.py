@@ -71,7 +71,9 @@ REASONS: dict[Reason, Row] = {
     Reason.BELIEF_NOT_READY: Row(HOLDING, "the belief does not yet suffice to act", ""),
     Reason.ROUND_TRIP: Row(HOLDING, "command and driver state take too long, there and back", "age of the echo, limit"),
     Reason.OVERRUNS: Row(HOLDING, "too many ticks of the last second lost whole periods", "number of overruns"),
-    Reason.REPEATED_FAILURE: Row(FAULT, "an action has failed repeatedly for one cause", "action and cause"),
+    Reason.REPEATED_FAILURE: Row(
+        FAULT, "an action fails again and again, or is done again and again without effect", "action and cause"
+    ),
     Reason.CONTROLLER_FAILED: Row(ACTION, "failed: the controller has given up", "text of the controller"),
     Reason.COMMAND_INVALID: Row(ACTION, "failed: the command is not finite or has the wrong length", "the value"),
     Reason.ACTION_TIMEOUT: Row(ACTION, "failed: the action exceeded its time limit", "the limit"),
