@@ -1,7 +1,6 @@
 """The driver without a bus."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import pytest
 
@@ -201,11 +200,9 @@ def test_a_paused_simulator_takes_no_command_for_one_from_the_future():
 def test_changes_in_quick_succession_do_not_silence_the_state():
     """Each published at once moved the next one by a period: after twenty changes nothing was heard for two seconds."""
     driver, published_ms = Driver(SPEC, 7), []
-    for period in range(40):
+    for period in range(31):
         now_ns = (1000 + 10 * period) * MS
         driver.unready = f"step {period}" if period < 20 else ""
         if driver.state(now_ns, now_ns) is not None:
             published_ms.append(10 * period)
-    gaps_ms = [later - earlier for earlier, later in pairwise(published_ms)]
-    assert published_ms[:21] == list(range(0, 210, 10))
-    assert max(gaps_ms) <= 100
+    assert published_ms == [*range(0, 210, 10), 300]

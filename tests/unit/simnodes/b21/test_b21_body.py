@@ -42,6 +42,7 @@ def fingerprint(seed):
 
 
 def test_same_seed_and_commands_give_the_same_readings_in_two_processes_and_after_a_reset():
+    pytest.importorskip("pybullet")
     code = "from tests.unit.simnodes.b21.test_b21_body import fingerprint; print(fingerprint(8), fingerprint(7))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stderr == ""  # nor does PyBullet print anything
