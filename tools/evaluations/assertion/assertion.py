@@ -29,8 +29,9 @@ REMARKS = (
     "before: the same controllers, nothing is predicted to fail. after: learned success, asserted subgoals. baseline: "
     "the same controllers on ways around the believed objects, from a graph of poses and arcs.",
     "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
-    "succeeds. slower: in the mean, against before, where both succeed; of after where the subgoal was needless; "
-    "baseline needless slower: of the baseline from these starts, where before may have been lucky.",
+    "succeeds. slower: mean over starts, against before, where both succeed: all such starts, with a subgoal or "
+    "without; needless slower: those with a needless subgoal; baseline needless slower: of the baseline from the same "
+    "starts, where before may have been lucky.",
     "after to baseline: how much slower after is than the baseline where both succeed; 95 % intervals by start.",
 )
 
@@ -80,6 +81,7 @@ def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
     successes = {name: [seed for seed in seeds if succeeded(found[name][seed])] for name in found}
     needless = [seed for seed in successes[BEFORE] if after[seed].asserted]
     needless_slower, to_baseline = slower_pct(before, after, needless), slower_pct(baseline, after, seeds)
+    slower = {name: slower_pct(before, found[name], successes[BEFORE]) for name in (AFTER, BASELINE)}
     return {
         "n": n,
         "success_before_pct": 100 * len(successes[BEFORE]) / n,
@@ -91,8 +93,10 @@ def row(found: Mapping[str, Outcomes], seeds: Sequence[int]) -> dict[str, Any]:
         "baseline_needless_slower_pct": slower_pct(before, baseline, needless)[0],
         "baseline_success_pct": 100 * len(successes[BASELINE]) / n,
         "ci95_baseline": share_interval(len(successes[BASELINE]), n),
-        "baseline_slower_pct": slower_pct(before, baseline, successes[BEFORE])[0],
-        "after_slower_pct": slower_pct(before, after, successes[BEFORE])[0],
+        "baseline_slower_pct": slower[BASELINE][0],
+        "ci95_baseline_slower": slower[BASELINE][1],
+        "after_slower_pct": slower[AFTER][0],
+        "ci95_after_slower": slower[AFTER][1],
         "after_to_baseline_pct": to_baseline[0],
         "ci95_after_to_baseline": to_baseline[1],
         "asserted_pct": 100 * sum(after[seed].asserted for seed in seeds) / n,

@@ -126,3 +126,13 @@ def test_what_a_few_needless_subgoals_cost_has_the_interval_of_a_few():
     assert row["needless_slower_pct"] == pytest.approx(10)
     assert row["ci95_needless_slower"] == pytest.approx((10 - 4.303 * 10 / 3**0.5, 10 + 4.303 * 10 / 3**0.5), abs=0.01)
     assert row["ci95_after_to_baseline"] == row["ci95_needless_slower"]
+
+
+def test_what_caution_costs_counts_starts_without_a_subgoal_and_has_an_interval():
+    before = {seed: outcome(10.0) for seed in range(3)}
+    after = {seed: outcome(10.0 + seed) for seed in range(3)}
+    row = assertion.row({"before": before, "after": after, "baseline": before}, range(3))
+    assert row["needless_pct"] == 0
+    assert row["after_slower_pct"] == pytest.approx(10)
+    assert row["ci95_after_slower"] == pytest.approx((10 - 4.303 * 10 / 3**0.5, 10 + 4.303 * 10 / 3**0.5), abs=0.01)
+    assert row["ci95_baseline_slower"] == pytest.approx((0, 0))
