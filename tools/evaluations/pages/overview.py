@@ -18,10 +18,13 @@ ROWS_MAX = 6
 HASHES, SHA256 = ("source_sha256", "models_sha256"), re.compile("[0-9a-f]{64}")
 # Main columns of all evaluations, in order.
 MAIN = (
-    "scenario", "domain", "robot", "action", "model", "run", "start", "mode", "space", "learner", "training_data",
-    "horizon", "n", "episodes", "mae_s", "mae_ci95", "floor_s", "accuracy_pct", "mean_greedy_s", "mean_refined_s",
-    "mean_lockstep_s", "mean_s", "duration_s", "improvement_pct", "ci95", "p_value", "slower_pct",
-    "oracle_pct", "regret_pct", "correlation", "success_before_pct", "success_after_pct", "needless_pct",
+    "scenario", "domain", "robot", "action", "chosen_in", "model", "run", "start", "mode", "space", "learner",
+    "setting", "gathered", "joule_worth_s", "training_data", "horizon", "n", "episodes", "mae_s", "mae_ci95",
+    "noise_floor_s", "over_floor", "accuracy_pct", "failure_accuracy_pct", "constant_accuracy_pct",
+    "missed_failures_pct", "mean_greedy_s", "mean_refined_s", "mean_lockstep_s", "mean_s", "duration_s",
+    "improvement_pct", "ci95", "p_value", "total_pct", "slower_pct", "failed", "contacts_pct_greedy",
+    "contacts_pct_refined", "oracle_pct", "regret_pct", "correlation", "success_before_pct", "success_after_pct",
+    "baseline_success_pct", "needless_pct", "needless_slower_pct", "after_slower_pct", "after_to_baseline_pct",
     "difference_pct", "ci95_pct", "equivalent",
 )  # fmt: skip
 

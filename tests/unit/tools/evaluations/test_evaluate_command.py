@@ -160,6 +160,36 @@ def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     assert "rows are on its page" not in write_overview(tmp_path, ["first"]).read_text()
 
 
+@pytest.mark.parametrize(
+    ("row", "titles"),
+    [
+        ({"setting": "no spread", "n": 3}, ["setting"]),
+        ({"gathered": "random", "episodes": 100}, ["gathered"]),
+        ({"joule_worth_s": 3.0, "n": 3}, ["joule worth, s"]),
+        ({"action": "reach", "noise_floor_s": 0.02, "over_floor": 3.1}, ["noise floor, s", "over floor"]),
+        (
+            {"failure_accuracy_pct": 98.5, "constant_accuracy_pct": 99.3, "missed_failures_pct": 0.5},
+            ["failure accuracy, %", "constant accuracy, %", "missed failures, %"],
+        ),
+        (
+            {
+                "scenario": "one",
+                "total_pct": 14.6,
+                "failed": 1,
+                "contacts_pct_greedy": 0.1,
+                "contacts_pct_refined": 0.5,
+            },
+            ["total, %", "failed", "contacts greedy, %", "contacts refined, %"],
+        ),
+        ({"scenario": "drive", "baseline_success_pct": 99.0}, ["baseline success, %"]),
+    ],
+)
+def test_the_overview_tells_what_a_row_is_of_and_what_a_gain_costs(row, titles, tmp_path):
+    publish_report(Report("first", "The first one", [row], (), {}, {}), True, tmp_path)
+    text = write_overview(tmp_path, ["first"]).read_text()
+    assert [title for title in titles if f">{title}<" not in text] == []
+
+
 def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
     publish_report(Report("first", "The first one", [{"scenario": "one"}], (), {}, {}), True, tmp_path)
     text = write_overview(tmp_path, ["first"]).read_text()
