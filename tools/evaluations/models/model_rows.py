@@ -11,6 +11,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
+from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.examples import duration_examples, success_examples
 from tailor.models.inference import OnnxDuration, OnnxSuccess
@@ -27,7 +28,7 @@ from tailor.tools.evaluations.seeds import seeds_of
 
 Row = dict[str, Any]
 REMARKS = (
-    "MAE: of the fresh episodes that finished, 95 % interval over episodes; bias: predicted minus observed; noise "
+    "MAE: of the fresh episodes that finished, 95 % interval over runs; bias: predicted minus observed; noise "
     "floor: repeated runs of the first 1000 of these tasks with other noise; over floor: the error on the same tasks "
     "as a multiple of it, bootstrap over tasks; failures: predicted and observed, of all fresh episodes; "
     "constant accuracy: of who always predicts the more frequent outcome; "
@@ -77,14 +78,17 @@ def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> lis
     return made
 
 
-def duration_columns(durations: Mapping[str, OnnxDuration], path: str, data: DataSet, seed: int) -> Row:
+def duration_columns(
+    durations: Mapping[str, OnnxDuration], path: str, data: DataSet, seed: int, per_run: int = 1
+) -> Row:
     """Errors and coverage of an action's duration model, on the finished episodes of a data set.
 
     Args:
       durations: The robot's models by path.
       path: `Action.duration_model`; episodes in a context are predicted by the model beside objects, if there is one.
       data: Episodes of that action, at least one of them finished.
-      seed: Random seed of the bootstrap of `mae_ci95`.
+      seed: Random seed of the bootstrap of `mae_ci95`, over runs.
+      per_run: Numbers that the episodes of one run share: those of a run are not independent.
     """
     finished = [episode for episode in data.episodes if episode.finished]
     examples = duration_examples(finished, 1)
@@ -92,7 +96,8 @@ def duration_columns(durations: Mapping[str, OnnxDuration], path: str, data: Dat
     beside = durations[Models(durations, {}).duration_path(path, in_context=True)]
     predicted = predicted_by(durations[path], beside, examples.arguments, in_context)
     off = predicted.mean_s - examples.targets
-    mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
+    runs = [episode.number // per_run for episode in finished]
+    mae, ci = _mean_over_runs(np.abs(off), runs, np.random.default_rng(seed))
     mean = float(examples.targets.mean())
     return {
         "training_episodes": durations[path].card["episodes"]["finished"],
@@ -106,6 +111,15 @@ def duration_columns(durations: Mapping[str, OnnxDuration], path: str, data: Dat
         "predicted_s": predicted.mean_s,
         "observed_s": examples.targets,
     }
+
+
+def _mean_over_runs(values: Array, runs: Sequence[int], rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
+    """Mean of one value an episode, shape (n,), and its 95 % interval by a bootstrap over runs."""
+    _, run = np.unique(runs, return_inverse=True)
+    sums, counts = np.bincount(run, values), np.bincount(run)
+    drawn = rng.integers(0, len(sums), (scores.BOOTSTRAPS, len(sums)))
+    low, high = np.quantile(sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1), [0.025, 0.975])
+    return float(values.mean()), (float(low), float(high))
 
 
 def _failures(model: OnnxSuccess, data: DataSet) -> Row:

@@ -19,6 +19,7 @@ from tailor.tools.evaluations.models import fresh, model_rows
 from tailor.tools.evaluations.models.model_rows import Row
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.learning.gathering.policy_runs import MAX_ACTIONS
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
@@ -64,6 +65,6 @@ def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
         for action in modelled_actions(domain):
             data = read_data_set(folder / action)
             if any(episode.finished for episode in data.episodes):
-                columns = model_rows.duration_columns(durations, f"{action}/duration", data, first)
+                columns = model_rows.duration_columns(durations, f"{action}/duration", data, first, MAX_ACTIONS)
                 rows.append({"domain": domain, "action": action, "chosen_in": scenario, **columns})
     return rows

@@ -146,3 +146,18 @@ def test_an_action_that_never_finishes_is_named(monkeypatch, capsys, tmp_path, w
         monkeypatch.setattr(fresh, stream, lambda *_, data=data: data)
     assert main(["evaluate", *words, "--store", str(tmp_path)]) == 2
     assert f"{action}: none of 6 episodes finished, expected some to judge by" in capsys.readouterr().err
+
+
+def test_episodes_of_one_run_count_as_one_unit_of_the_errors_interval():
+    ticks, durations_s = np.zeros((1, 8)), (3.1, 3.3, 3.5, 3.9)  # errors of four runs
+    once = [Episode(100 * run, ticks[0], ticks, s, True, "") for run, s in enumerate(durations_s)]
+    often = [replace(each, number=each.number + k) for each in once for k in range(25)]
+    models = {"go/duration": Wide(0.5)}
+    one, many = (
+        duration_columns(models, "go/duration", DataSet({"arguments": []}, tuple(some), ""), 1, per_run=100)
+        for some in (once, often)
+    )
+    assert many["mae_s"] == pytest.approx(one["mae_s"])
+    assert many["mae_ci95"] == pytest.approx(one["mae_ci95"])
+    alone = duration_columns(models, "go/duration", DataSet({"arguments": []}, tuple(often), ""), 1)["mae_ci95"]
+    assert alone[1] - alone[0] < 0.5 * (many["mae_ci95"][1] - many["mae_ci95"][0])
