@@ -11,7 +11,7 @@ from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.lockstep.run import Run
 from tailor.tools.lockstep.task_sampler import sampler_of
 
-FIRST_SEED = 1_000_000  # of evaluations; models are trained and settings are chosen on smaller seeds
+FIRST_SEED = 1_000_000  # of evaluations; settings are chosen on smaller seeds
 
 
 @dataclass(frozen=True, slots=True)
