@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.domains.arm.letters import font
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.arm.letter_figures import (
     LEARNED,
@@ -46,15 +47,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seeds", type=at_least(1, "--seeds"), default=3, help="starts and sizes of each letter (default %(default)s)"
     )
+    parser.add_argument("--letters", default="", help="only these, e.g. BDF, from the same starts (default: all)")
     parser.add_argument("--no-oracle", action="store_true", help="leave out what chooses by the controller's own rule")
     configure_report(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and publish the report; 0 if refined letters are faster than all others that were written."""
-    seeds = seeds_of("arm", arguments)
+    """Evaluate and publish the report; 0 if refined letters are faster than all others that were written.
+
+    Raises:
+      UsageError: A letter that the font lacks, or the same one twice.
+    """
+    seeds, chosen = seeds_of("arm", arguments), arguments.letters
+    if len(set(chosen)) < len(chosen) or not set(chosen) <= set(font()):
+        raise UsageError(f"--letters is '{chosen}', expected some of {''.join(sorted(font()))}, each once")
     modes = (*LEARNED, PERFECT_GREEDY, *(() if arguments.no_oracle else ORACLES))
-    keys = keys_of(seeds, arguments.seeds)
+    keys = [key for key in keys_of(seeds, arguments.seeds) if key[0] in (chosen or font())]
     found = measure_letters(modes, keys, arguments.zoo, arguments.jobs)
     rows = rows_of(found)
     plots = {} if arguments.report is None else _picture(arguments.report, seeds.first, arguments.zoo)

@@ -17,6 +17,7 @@ from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.seeds import Seeds
+from tailor.tools.main import main
 
 
 def test_the_oracle_predicts_what_the_controller_plans():
@@ -104,3 +105,19 @@ def test_no_two_letters_have_the_same_start():
     keys = letters.keys_of(Seeds(1000, {}), 3)
     assert Counter(letter for letter, _ in keys) == dict.fromkeys(font(), 3)
     assert sorted(seed for _, seed in keys) == list(range(1000, 1000 + 3 * len(font())))
+
+
+def test_some_letters_are_written_from_the_starts_that_they_have_among_all(monkeypatch, capsys):
+    asked = []
+
+    def measured(modes, keys, zoo, jobs):
+        asked.extend(keys)
+        return {mode.name: dict.fromkeys(keys, figures(5.0)) for mode in modes}
+
+    monkeypatch.setattr(letters, "measure_letters", measured)
+    command = ["evaluate", "letters", "--seeds", "2", "--no-oracle", "--json"]
+    main([*command, "--seed", "1000", "--letters", "BZ"])
+    assert asked == [key for key in letters.keys_of(Seeds(1000, {}), 2) if key[0] in "BZ"]
+    assert main([*command, "--letters", "BÄ"]) == 2
+    assert main([*command, "--letters", "BB"]) == 2
+    assert "--letters is 'BB', expected some of ABC" in capsys.readouterr().err
