@@ -93,10 +93,10 @@ class PoseTracker:
         """
         if not self._history:
             return ""
-        near = self._history[-1]
+        near, apart_ns = self._history[-1], 0
         if seen.stamp_ns and near[0]:  # else a stamp is missing: the newest odometry
             near = min(self._history, key=lambda entry: abs(entry[0] - seen.stamp_ns))
-        apart_ns = abs(near[0] - seen.stamp_ns) if seen.stamp_ns and near[0] else 0
+            apart_ns = abs(near[0] - seen.stamp_ns)
         if apart_ns > APART_NS and not self._stands():
             return f"is {apart_ns * 1e-9:.1f} s from any odometry, expected stamps of one clock"
         _, pose, distance_m, turned_rad = near

@@ -58,11 +58,11 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
       UsageError: A letter that the font lacks, or the same one twice.
     """
-    seeds, chosen = seeds_of("arm", arguments), arguments.letters
-    if len(set(chosen)) < len(chosen) or not set(chosen) <= set(font()):
-        raise UsageError(f"--letters is '{chosen}', expected some of {''.join(sorted(font()))}, each once")
+    seeds, known, chosen = seeds_of("arm", arguments), sorted(font()), arguments.letters
+    if len(set(chosen)) < len(chosen) or not set(chosen) <= set(known):
+        raise UsageError(f"--letters is '{chosen}', expected some of {''.join(known)}, each once")
     modes = (*LEARNED, PERFECT_GREEDY, *(() if arguments.no_oracle else ORACLES))
-    keys = [key for key in keys_of(seeds, arguments.seeds) if key[0] in (chosen or font())]
+    keys = [key for key in keys_of(seeds, arguments.seeds) if key[0] in (chosen or known)]
     found = measure_letters(modes, keys, arguments.zoo, arguments.jobs)
     rows = rows_of(found)
     plots = {} if arguments.report is None else _picture(arguments.report, seeds.first, arguments.zoo)
