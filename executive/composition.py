@@ -11,6 +11,8 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.executive.interfaces.models import Models
+from tailor.executive.refinement.objective.sequence import InstantiatedAction
+from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
@@ -69,6 +71,22 @@ def load_models(robot: str, zoo: str = "") -> Models:
     folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
     return Models(durations, successes)
+
+
+def check_models(context: Context) -> None:
+    """Raise UsageError, naming action and model, if an action needs a model that is not loaded.
+
+    A tick would find out while the robot is armed. Which ones are needed depends on the settings, too: energy counts
+    only where it has a weight.
+    """
+    missing = []
+    for action in context.domain.actions.values():
+        try:
+            models_of(InstantiatedAction(action, 0, ()), context.models, context.settings.refinement)
+        except UsageError as error:
+            missing.append(str(error))
+    if missing:
+        raise UsageError("; ".join(missing))
 
 
 def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:

@@ -163,8 +163,9 @@ def test_missing_model_file(zoo):
 def test_model_that_was_never_made(zoo):
     for file in (zoo / "agilo/approachBall").glob("success.*"):
         file.unlink()
-    line = refused("executive", "soccer", "--zoo", zoo)
-    assert "action approachBall needs the model approachBall/success" in line
+    for command in ("executive", "up"):
+        line = refused(command, "soccer", "--zoo", zoo)
+        assert "action approachBall needs the model approachBall/success" in line
 
 
 def test_altered_model_file(zoo):

@@ -6,7 +6,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tailor.executive.composition import build_context
+from tailor.executive.composition import build_context, check_models
 from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
@@ -52,7 +52,7 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
     """
     if config.record is not None and config.record.exists():
         raise UsageError(EXISTS.format(config.record))
-    build_context(config.executive, sender="")  # reports all that is wrong with it
+    check_models(build_context(config.executive, sender=""))  # both report all that is wrong with it
     with (
         hosted_bus(config.bus, screen.report) as session,
         tempfile.TemporaryFile("w+") as printed,

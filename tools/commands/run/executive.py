@@ -6,7 +6,7 @@ import argparse
 import time
 from dataclasses import replace
 
-from tailor.executive.composition import build_context, provenance
+from tailor.executive.composition import build_context, check_models, provenance
 from tailor.executive.core.state import State
 from tailor.executive.deliberation.context import Context, check_goal
 from tailor.executive.interfaces.reasons import Reason
@@ -27,7 +27,6 @@ from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
-from tailor.tools.launch.model_check import check_models
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.recordings.recorded_source import source_entry

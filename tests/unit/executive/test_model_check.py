@@ -7,11 +7,11 @@ import re
 
 import pytest
 
+from tailor.executive.composition import check_models
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.launch.model_check import check_models
 from tests.support.toy_domain import LineModel, line_context
 
 
