@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
+from tailor.executive.core.effects import confirmed, with_effects
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
@@ -15,7 +16,6 @@ from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
-MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
 MAX_FAILURES = 10  # of whatever cause, without a success between them: controllers may name a measured value in each
 
 
@@ -106,30 +106,11 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
 
 def _done(context: Context, state: State, running: Running) -> tuple[State, ActionFinished]:
     finished = finished_message(context, state, state.task.finished, running, ("done", None))
-    task = _with_effects(context, replace(after_action(state.task), failures=()), running)
-    return _confirmed(context, replace(state, task=task, deliberation=None, coasted=0), running), finished
-
-
-def _confirmed(context: Context, state: State, running: Running) -> State:
-    """Note whether the effects of an action that is done are observed; a fault if they never are.
-
-    The plan is then the same again: an action whose effects cannot be observed would be repeated for ever.
-    """
-    task = state.task
-    action = task.plan.action_of(running.step) if task.plan is not None and not running.asserted else None
-    if action is None:
-        return state
-    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
-    missing = planning.apply_action(context.pddl_domain, context.problem, facts, action) - facts
-    if not missing:
-        others = tuple(each for each in task.unconfirmed if each != action)
-        return replace(state, task=replace(task, unconfirmed=others))
-    unconfirmed = (*task.unconfirmed, action)
-    fault = None
-    if (count := unconfirmed.count(action)) >= MAX_UNCONFIRMED:
-        fact = " ".join(min(missing))
-        fault = Cause(Reason.REPEATED_FAILURE, f"{' '.join(action)}: done {count} times, and ({fact}) is not observed")
-    return replace(state, task=replace(task, unconfirmed=unconfirmed), fault=fault)
+    task = with_effects(context, replace(after_action(state.task), failures=()), running)
+    state = confirmed(context, replace(state, task=task, deliberation=None, coasted=0), running)
+    if state.fault is not None:
+        state = replace(state, command=at_rest(context.domain.axes, state.command))
+    return state, finished
 
 
 def _failed(context: Context, state: State, running: Running, cause: Cause) -> tuple[State, ActionFinished]:
@@ -160,13 +141,3 @@ def _abandoned(context: Context, state: State) -> tuple[State, ActionFinished | 
 def after_action(task: Task) -> Task:
     """The task once its action has ended: nothing runs, nothing is decided."""
     return replace(task, running=None, decision=None, finished=task.finished + 1)
-
-
-def _with_effects(context: Context, task: Task, running: Running) -> Task:
-    """The abstract state after a plan step is done; an asserted subgoal does not change it."""
-    if running.asserted or task.plan is None:
-        return task
-    action = task.plan.action_of(running.step)
-    assert action is not None, "the running action is a step of the plan"
-    facts = planning.apply_action(context.pddl_domain, context.problem, task.facts, action)
-    return replace(task, facts=facts, done=task.done | {running.step})

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import finished_message
+from tailor.executive.core.effects import missing_effects, planned_action
 from tailor.executive.core.execution import Running
 from tailor.executive.core.state import Output, State
 from tailor.executive.core.tick_messages import (
@@ -75,9 +76,8 @@ def reports(context: Context, state: State, published: Published) -> tuple[Outpu
 
 def _overtaken(context: Context, state: State, plan: planning.Plan | None, running: Running) -> tuple[str, Cause]:
     """Outcome of an action that the new decision does not begin with: its effects hold, or others come first."""
-    action = plan.action_of(running.step) if plan is not None and not running.asserted else None
-    facts = state.task.facts
-    if action is not None and planning.apply_action(context.pddl_domain, context.problem, facts, action) <= facts:
+    action = planned_action(plan, running)
+    if action is not None and not missing_effects(context, state.task.facts, action):
         return "done", Cause(Reason.EFFECTS_HOLD)
     return "aborted", Cause(Reason.COURSE_AT_RISK if state.now_ns < state.halted_until_ns else Reason.SUPERSEDED)
 

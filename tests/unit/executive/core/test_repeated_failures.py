@@ -6,7 +6,8 @@ import dataclasses
 
 import pytest
 
-from tailor.executive.core.action_cycle import MAX_FAILURES, MAX_UNCONFIRMED
+from tailor.executive.core.action_cycle import MAX_FAILURES
+from tailor.executive.core.effects import MAX_UNCONFIRMED
 from tailor.executive.core.modes import Mode
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.reasons import Cause, Reason
@@ -59,7 +60,9 @@ class Forgetful(LineDomain):
 
 @pytest.mark.promise("P30")
 def test_an_action_whose_effect_is_never_observed_is_a_fault_and_not_repeated_for_ever():
-    run = list(drive(of(Forgetful()), goal="(visited a)", ticks=400))
+    domain = Forgetful()
+    domain.actions = {"slide": dataclasses.replace(SLIDE, controller=done_in_motion)}
+    run = list(drive(of(domain), goal="(visited a)", ticks=400))
     finished = messages(run, ActionFinished)
     assert {f.outcome for f in finished} == {"done"}
     state = run[-1][0]
@@ -68,3 +71,10 @@ def test_an_action_whose_effect_is_never_observed_is_a_fault_and_not_repeated_fo
         Reason.REPEATED_FAILURE, f"slide a a: done {MAX_UNCONFIRMED} times, and (visited a) is not observed"
     )
     assert state.command == (0.0,)
+    faulty = next(step[0] for step in run if step[0].fault is not None)
+    assert faulty.mode is Mode.EXECUTING, "the tick in which it is found"
+    assert faulty.command == (0.0,)
+
+
+def done_in_motion(state, now_ns, belief, arguments):
+    return Control(state, (0.5,), "done")

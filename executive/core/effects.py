@@ -1,0 +1,55 @@
+"""What the plan expects of an action that has been done, and whether it is observed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tailor.executive import planning
+from tailor.executive.core.execution import Running
+from tailor.executive.core.state import State, Task
+from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.interfaces.values import Fact
+
+MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
+
+
+def with_effects(context: Context, task: Task, running: Running) -> Task:
+    """The abstract state after a plan step is done; an asserted subgoal does not change it."""
+    action = planned_action(task.plan, running)
+    if action is None:
+        return task
+    facts = planning.apply_action(context.pddl_domain, context.problem, task.facts, action)
+    return replace(task, facts=facts, done=task.done | {running.step})
+
+
+def confirmed(context: Context, state: State, running: Running) -> State:
+    """Note whether the effects of an action that is done are observed; a fault if they never are.
+
+    The plan is then the same again: an action whose effects cannot be observed would be repeated for ever.
+    """
+    task = state.task
+    action = planned_action(task.plan, running)
+    if action is None:
+        return state
+    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    missing = missing_effects(context, facts, action)
+    if not missing:
+        others = tuple(each for each in task.unconfirmed if each != action)
+        return replace(state, task=replace(task, unconfirmed=others))
+    state = replace(state, task=replace(task, unconfirmed=(*task.unconfirmed, action)))
+    count = state.task.unconfirmed.count(action)
+    if count < MAX_UNCONFIRMED:
+        return state
+    detail = f"{' '.join(action)}: done {count} times, and ({' '.join(min(missing))}) is not observed"
+    return replace(state, fault=Cause(Reason.REPEATED_FAILURE, detail))
+
+
+def planned_action(plan: planning.Plan | None, running: Running) -> Fact | None:
+    """The ground action of the plan that the running action serves; None if it leads to an asserted subgoal."""
+    return plan.action_of(running.step) if plan is not None and not running.asserted else None
+
+
+def missing_effects(context: Context, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
+    """Facts that a ground action brings about and that do not hold."""
+    return planning.apply_action(context.pddl_domain, context.problem, facts, action) - facts
