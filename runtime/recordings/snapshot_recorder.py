@@ -51,22 +51,26 @@ class SnapshotRecorder:
         return self.health
 
     def _keep(self, raw: Raw, now_ns: int) -> None:
-        if not raw.is_put or not self._selection.wants(raw.key, named_type(raw.encoding)):
+        if not raw.is_put:
             return
-        self._buffer.add(raw, raw.received_wall_ns or wall_ns(), now_ns)
-        self._metadata.observe(raw)
-        failure = self._detector.detect(raw)
+        failure = self._detector.detect(raw)  # whether it is recorded or not: any selection may be of a failure
         if failure and not self._reason:
             self._reason, self._write_at_ns = failure, now_ns + AFTER_NS  # includes the second after the failure
+        if self._selection.wants(raw.key, named_type(raw.encoding)):
+            self._buffer.add(raw, raw.received_wall_ns or wall_ns(), now_ns)
+            self._metadata.observe(raw)
 
     def _write(self) -> None:
         reason, self._reason = self._reason, ""
+        if self._buffer.is_empty:
+            return
         health, path = self.health, self._free_path()
         try:
             health.messages += self._buffer.write(path, {**self._metadata.entries, "snapshot": {"reason": reason}})
         except OSError as error:
             health.disk_error = error.strerror or str(error)
             return
+        health.disk_error = ""
         health.files.append(path)
         health.bytes += path.stat().st_size
 

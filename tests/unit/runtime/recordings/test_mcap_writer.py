@@ -408,6 +408,20 @@ def test_a_snapshot_of_nothing_is_refused(tmp_path):
     assert [m.sequence for m in open_recording(tmp_path / "s_000.mcap").messages()] == [1]
 
 
+def test_a_failure_is_noticed_in_messages_that_are_not_recorded(tmp_path):
+    queue = IngestQueue()
+    only_odometry = SnapshotRecorder(
+        tmp_path / "s.mcap", queue, selection(["odom"], []), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
+    queue.put(odometry(1))
+    for sequence, mode in enumerate(("EXECUTING", "FAULT")):
+        queue.put(status(mode, sequence))
+    only_odometry.step(0)
+    only_odometry.step(2 * S)
+    (written,) = only_odometry.health.files
+    assert [m.key for m in open_recording(written).messages()] == ["agilo/odom"]
+
+
 @pytest.fixture
 def full_disk(monkeypatch):
     """Call with True and False: whether the disk is full."""
@@ -468,6 +482,7 @@ def test_a_snapshot_that_fails_on_a_full_disk_is_reported_and_the_next_one_is_wr
     recorder.request_snapshot("again", 2)
     recorder.step(2)
     assert [path.name for path in recorder.health.files] == ["s_000.mcap"]
+    assert recorder.health.disk_error == ""
 
 
 def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones(tmp_path):
