@@ -12,6 +12,7 @@ import signal
 import socket
 import sys
 import time
+from contextlib import suppress
 
 TERM_S = 3.0  # as Child.stop grants
 
@@ -34,7 +35,8 @@ def main() -> None:
         select.select(children, [], [], max(0.0, deadline_s - time.monotonic()))
         children = running(children)
     for child in children:
-        signal.pidfd_send_signal(child, signal.SIGKILL)
+        with suppress(ProcessLookupError):  # it has just ended; the others have not
+            signal.pidfd_send_signal(child, signal.SIGKILL)
 
 
 def running(children: list[int]) -> list[int]:
