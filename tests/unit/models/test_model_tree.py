@@ -104,3 +104,18 @@ def test_a_distilled_tree_says_what_its_teacher_says() -> None:
     bag, pupil = BaggedModelTrees(trees=5, **settings).fit(x, y), DistilledModelTree(trees=5, **settings).fit(x, y)
     fresh = two_planes(500, seed=5)[0]
     assert np.abs(bag.predict(fresh) - pupil.predict(fresh)).mean() < 0.1
+
+
+def test_a_distilled_forest_does_not_learn_failures_by_heart_that_nothing_explains() -> None:
+    rng = np.random.default_rng(3)
+    x, success = rng.uniform(-1, 1, (2000, 4)), rng.random(2000) > 0.01
+    predicted = DistilledForest(random_state=1).fit(x, success).predict_proba(x)[:, 1]
+    assert abs(predicted.mean() - success.mean()) < 0.005
+    assert predicted.min() > 0.9
+
+
+def test_a_distilled_forest_learns_many_failures_as_sharply_as_they_are() -> None:
+    x = np.random.default_rng(3).uniform(-1, 1, (3000, 4))
+    fresh = np.random.default_rng(4).uniform(-1, 1, (1000, 4))
+    forest = DistilledForest(random_state=1).fit(x, np.abs(x[:, 0]) + np.abs(x[:, 1]) < 1)
+    assert (forest.predict(fresh) == (np.abs(fresh[:, 0]) + np.abs(fresh[:, 1]) < 1)).mean() > 0.95
