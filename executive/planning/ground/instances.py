@@ -54,7 +54,8 @@ def instance(
         return None
     name = (schema.name, *(binding[parameter.name] for parameter in schema.parameters))
     if cost < 0:
-        raise NegativeCost(f"the cost {format_number(float(cost))} of {format_atom(name)}")
+        amount = format_number(float(cost)) if cost >= -MAX_NUMBER else f"below {-MAX_NUMBER:g}"  # no float may hold it
+        raise NegativeCost(f"the cost {amount} of {format_atom(name)}")
     if max(bounds[0], cost) > MAX_NUMBER:
         raise TooMuchToGround(f"the duration or the cost of '{schema.name}' is above {MAX_NUMBER:g}")
     stated = _effects(schema, binding, world, facts)

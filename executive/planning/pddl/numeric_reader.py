@@ -35,12 +35,12 @@ def read_cost(increase: Form, scope: Scope) -> Numeric:
     """The cost in (increase (total-cost) cost).
 
     Raises:
-      PddlError: Malformed, a negative number, or more numbers than `MAX_NUMBERS`.
+      PddlError: Malformed, or more numbers than `MAX_NUMBERS`; `Unsupported`: a negative number.
     """
     expect(increase, 2)
     cost = _numeric(increase.items[2], scope)
     if isinstance(cost, Number) and cost.value < 0:
-        raise increase.place.error("expected a cost of at least 0")
+        raise increase.place.unsupported("a cost below 0")
     if numbers_in(cost) > MAX_NUMBERS:
         raise increase.place.error(f"the action's cost has more than {MAX_NUMBERS} numbers")
     return cost

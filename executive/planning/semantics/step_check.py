@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Action, Domain, Numeric
 from tailor.executive.planning.plans.plan import Plan, Step
@@ -53,6 +55,6 @@ def check_duration(step: Step, action: Action, binding: Binding, objects: Object
     allowed = allowed_durations(action.duration, binding, objects.problem.values)
     if allowed is None:
         raise Unsound(f"step {step.id}: {format_atom(step.action)} has no possible duration")
-    slack_s = SLACK_TICKS * plan.tick_s + SLACK_S
+    slack_s = Fraction(SLACK_TICKS * plan.tick_s + SLACK_S)  # a bound may be too large for a float
     if not allowed[0] - slack_s <= step.duration <= allowed[1] + slack_s:
         raise Unsound(f"step {step.id}: {format_atom(step.action)} cannot last {step.duration} s")

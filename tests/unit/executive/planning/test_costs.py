@@ -9,6 +9,7 @@ from tailor.executive.planning import (
     DEFAULT,
     AnytimeSearch,
     Settings,
+    Unsupported,
     parse_plan,
     validate,
     validate_every_order,
@@ -90,6 +91,20 @@ def test_a_negative_cost_is_refused_by_name_and_proves_nothing(options):
     result = solve(domain, problem, options)
     assert (result.status, result.reason) == ("unsupported", reason)
     assert best(domain, problem, options).ended == reason
+
+
+def test_a_negative_cost_that_no_float_holds_is_refused_by_name(options):
+    domain, problem = read(DOMAIN.format(f"(- 0 (* {'1e9 ' * 40}))"), PROBLEM.format(""))
+    result = solve(domain, problem, options)
+    assert (result.status, result.reason) == (
+        "unsupported",
+        "the cost below -1e+09 of (act a) is not supported: it is below 0",
+    )
+
+
+def test_a_negative_number_as_a_cost_is_outside_the_language():
+    with pytest.raises(Unsupported, match=r"^domain:2:\d+: a cost below 0 is not supported$"):
+        read(DOMAIN.format("-1"), PROBLEM.format(""))
 
 
 def test_lifted_search_ranks_by_the_cost_as_ground_search_does():

@@ -150,3 +150,15 @@ def test_a_duration_or_cost_beyond_all_bounds_is_refused_by_its_action(duration,
     texts = (domain, "(define (problem x) (:domain d) (:init) (:goal (p)) (:metric minimize (total-cost)))")
     result = solve(*read(*texts), Settings(ground=ground))
     assert (result.status, result.reason) == ("limit", "the duration or the cost of 'act' is above 1e+09")
+
+
+def test_an_upper_limit_that_no_float_holds_is_none():
+    duration = f"(and (>= ?duration 1) (<= ?duration (* {'1e9 ' * 40})))"
+    domain, problem = read(
+        "(define (domain d) (:predicates (g))"
+        f" (:durative-action a :parameters () :duration {duration} :effect (at end (g))))",
+        "(define (problem p) (:domain d) (:init) (:goal (g)))",
+    )
+    plan = solve(domain, problem).plan
+    assert plan.makespan == pytest.approx(1.01)
+    assert validate(plan, domain, problem) == ""
