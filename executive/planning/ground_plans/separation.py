@@ -7,19 +7,26 @@ that it does not need, alternatives that it did not choose.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
-from tailor.executive.planning.pddl.language import Action, And, Atom, Condition, Equal, Formula, Not, Or, Quantified
+from tailor.executive.planning.pddl.language import Action, And, Atom, Equal, Formula, Not, Or, Quantified, Typed
 from tailor.executive.planning.pddl.problem import TimedLiteral
 from tailor.executive.planning.structures.orderings import FIRST, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
+Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
+Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
+
 
 class Event(NamedTuple):
-    """The facts that a start, an end or a timed literal reads, adds and removes, as far as it may."""
+    """The facts that a start, an end or a timed literal reads, adds and removes, as far as it may.
+
+    `reads` are those among the facts that some event changes: a quantifier may range over millions of others.
+    """
 
     reads: frozenset[Fact] = frozenset()
     added: frozenset[Fact] = frozenset()
@@ -51,7 +58,7 @@ def separated(
     """
     if not isinstance(orderings, TemporalNetwork):
         return orderings
-    events = [*map(_literal, timed), *(event for name in names for event in _events(name, world))]
+    events = _events(names, timed, world)
     while (pair := _coincident(orderings, events)) is not None:
         further = orderings.ordered(*pair) or orderings.ordered(pair[1], pair[0])
         if further is None:
@@ -73,47 +80,86 @@ def _coincident(network: TemporalNetwork, events: Sequence[Event]) -> tuple[int,
     return None
 
 
+class _Moments(NamedTuple):
+    """The moments of a step that one event covers."""
+
+    schema: Action
+    binding: Binding
+    moments: tuple[str, ...]
+
+
+def _events(names: Sequence[Fact], timed: Sequence[TimedLiteral], world: StaticWorld) -> list[Event]:
+    """The events of the timed literals and of the steps, in the order of their nodes."""
+    parts = [part for name in names for part in _both_ends(name, world)]
+    literals, steps = [_literal(each) for each in timed], [_changes(part, world) for part in parts]
+    changed: dict[str, set[Fact]] = {}
+    for event in (*literals, *steps):
+        for fact in event.added | event.removed:
+            changed.setdefault(fact[0], set()).add(fact)
+    reading = zip(steps, parts, strict=True)
+    return [*literals, *(event._replace(reads=_reads(part, changed, world)) for event, part in reading)]
+
+
 def _literal(timed: TimedLiteral) -> Event:
-    facts, none = frozenset({timed.literal.fact}), frozenset[Fact]()
-    return Event(none, facts, none) if timed.literal.positive else Event(none, none, facts)
+    facts = frozenset({timed.literal.fact})
+    return Event(added=facts) if timed.literal.positive else Event(removed=facts)
 
 
-def _events(name: Fact, world: StaticWorld) -> tuple[Event, Event]:
+def _both_ends(name: Fact, world: StaticWorld) -> tuple[_Moments, _Moments]:
     """The start and the end of an action; all of one without duration belongs to its start."""
     schema = next(action for action in world.domain.actions if action.name == name[0])
     binding = {p.name: argument for p, argument in zip(schema.parameters, name[1:], strict=True)}
-    if schema.duration is None:
-        return _event(schema, binding, world, ("start", "end")), Event()
-    return _event(schema, binding, world, ("start",)), _event(schema, binding, world, ("end",))
+    start, end = (("start", "end"), ()) if schema.duration is None else (("start",), ("end",))
+    return _Moments(schema, binding, start), _Moments(schema, binding, end)
 
 
-def _event(schema: Action, binding: Binding, world: StaticWorld, moments: tuple[str, ...]) -> Event:
-    reads = _read(schema.conditions, binding, world, moments)
+def _changes(part: _Moments, world: StaticWorld) -> Event:
+    """The event, without what it reads."""
     changes: tuple[set[Fact], set[Fact]] = set(), set()
-    for effect in schema.effects:
-        for inner in bindings(effect.variables, binding, world):
-            reads.update(_read(effect.condition, inner, world, moments))
-            if effect.when in moments:
-                changes[effect.positive].update(_facts(effect.atom, inner, world))
-    return Event(frozenset(reads), frozenset(changes[True]), frozenset(changes[False]))
+    for effect in part.schema.effects:
+        if effect.when in part.moments:
+            for inner in bindings(effect.variables, part.binding, world):
+                fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
+                changes[effect.positive].add(fact)
+    return Event(added=frozenset(changes[True]), removed=frozenset(changes[False]))
 
 
-def _read(conditions: Sequence[Condition], binding: Binding, world: StaticWorld, moments: Sequence[str]) -> set[Fact]:
-    return {fact for c in conditions if c.when in moments for fact in _facts(c.formula, binding, world)}
+def _reads(part: _Moments, changed: Changed, world: StaticWorld) -> frozenset[Fact]:
+    """The changed facts that an event reads, in conditions of the action or of its effects."""
+    terms: Terms = {name: (value,) for name, value in part.binding.items()}
+    read = [(condition, terms) for condition in part.schema.conditions]
+    for effect in part.schema.effects:
+        inner = _chosen(effect.variables, terms, world)
+        read += [(condition, inner) for condition in effect.condition]
+    own = ((condition.formula, inner) for condition, inner in read if condition.when in part.moments)
+    return frozenset(fact for formula, inner in own for fact in _mentioned(formula, inner, changed, world))
 
 
-def _facts(formula: Formula, binding: Binding, world: StaticWorld) -> Iterator[Fact]:
-    """The facts that a formula mentions, for all objects of its quantifiers."""
+def _chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Terms:
+    """The terms with variables that stand for all objects of their types."""
+    return {**terms, **{variable.name: world.choices(variable) for variable in variables}}
+
+
+def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
+    """The changed facts that a formula mentions, for all objects of its variables."""
     match formula:
-        case Atom(predicate, terms):
-            yield (predicate, *(binding.get(term, term) for term in terms))
+        case Atom(predicate, names):
+            yield from (fact for fact in changed.get(predicate, ()) if _fits(names, fact[1:], terms))
         case Not(part):
-            yield from _facts(part, binding, world)
+            yield from _mentioned(part, terms, changed, world)
         case And(parts) | Or(parts):
             for part in parts:
-                yield from _facts(part, binding, world)
+                yield from _mentioned(part, terms, changed, world)
         case Quantified(_, variables, part):
-            for inner in bindings(variables, binding, world):
-                yield from _facts(part, inner, world)
+            yield from _mentioned(part, _chosen(variables, terms, world), changed, world)
         case Equal():
             pass
+
+
+def _fits(names: Sequence[str], objects: Sequence[str], terms: Terms) -> bool:
+    """Whether names can stand for these objects, each for one only."""
+    chosen = dict(zip(names, objects, strict=True))
+    return all(
+        chosen[name] == actual and actual in terms.get(name, (name,))
+        for name, actual in zip(names, objects, strict=True)
+    )

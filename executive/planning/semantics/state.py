@@ -97,8 +97,8 @@ def support(formula: Formula, binding: Binding, state: State, objects: Objects) 
         case Or(parts):
             return support(next(p for p in parts if holds(p, binding, state, objects)), binding, state, objects)
         case Quantified(every, variables, part):
-            inner = [b for b in objects.bindings(variables, binding) if every or holds(part, b, state, objects)]
-            chosen = inner if every else inner[:1]
+            inner = (b for b in objects.bindings(variables, binding) if every or holds(part, b, state, objects))
+            chosen = inner if every else itertools.islice(inner, 1)  # most of the others may never be tried
             return [literal for b in chosen for literal in support(part, b, state, objects)]
 
 

@@ -1,5 +1,7 @@
 """Events at the same time: those that interfere are kept apart; actions that need each other at once are found."""
 
+import time
+
 import pytest
 
 from tailor.executive.planning import GroundCache, Search, Settings, validate
@@ -117,3 +119,20 @@ class _Unlimited:
     def spent(self):
         self.granted += 1
         return self.granted > UNLIMITED
+
+
+@pytest.mark.parametrize("settings", BOTH, ids=["ground", "lifted"])
+def test_a_quantifier_over_millions_of_objects_that_grounding_decides_at_once_takes_no_time(settings):
+    many = "(exists (?a ?b ?c ?d ?e ?f ?i ?j) (or (= ?a ?a) (p ?b)))"  # ten to the 8th, one of which decides it
+    actions = [action("one", f"(at start {many})", "(at end (g))"), action("two", "", "(at start (p b)) (at end (q))")]
+    objects = "(:objects " + " ".join(f"o{n}" for n in range(8)) + ")"
+    domain, problem = read(
+        f"{HEAD} {' '.join(actions)})",
+        f"(define (problem x) (:domain d) {objects} (:init) (:goal (and (q) (g))))",
+    )
+    began = time.process_time()
+    result = solve(domain, problem, settings)
+    assert time.process_time() - began < 5
+    assert validate(result.plan, domain, problem) == ""
+    times = starts(result)
+    assert abs(times["one",] - times["two",]) == pytest.approx(0.01)  # one of the alternatives is changed

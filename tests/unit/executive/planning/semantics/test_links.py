@@ -1,6 +1,7 @@
 """Plans without links get them: for conditions, for conditional effects, and for those that must not happen."""
 
 import dataclasses
+import time
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -95,3 +96,16 @@ def test_whatever_keeps_to_the_orderings_of_a_linked_plan_reaches_the_goal(texts
         left.remove(ready[-1])
     steps = tuple(dataclasses.replace(step, start=float(n)) for n, step in enumerate(late_first, 1))
     assert validate(dataclasses.replace(plan, steps=steps), domain, problem) == ""
+
+
+def test_a_condition_that_the_first_of_millions_of_objects_fulfils_is_linked_at_once():
+    objects = " ".join(f"o{n}" for n in range(10))
+    domain, problem = read(
+        """(define (domain d) (:predicates (p ?x) (g)) (:action a :parameters ()
+          :precondition (exists (?a ?b ?c ?d ?e ?f ?i ?j) (p ?a)) :effect (g)))""",
+        f"(define (problem x) (:domain d) (:objects {objects}) (:init (p o0)) (:goal (g)))",
+    )
+    began = time.process_time()
+    links, _ = linked("1:(a)\n", domain, problem)
+    assert time.process_time() - began < 5
+    assert links == {(0, "(p o0)", 1), (1, "(g)", GOAL)}
