@@ -29,7 +29,7 @@ def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], ob
     """The fault of a link or ""; `deadlines` is the last time at which each step may require a condition."""
     if link.producer not in starts or (link.consumer != GOAL and link.consumer not in starts):
         return "names a step that is not in the plan"
-    if link.consumer != GOAL and starts[link.producer] >= deadlines[link.consumer]:
+    if link.consumer != GOAL and starts[link.producer] >= deadlines[link.consumer] and not _is_own(link, bound):
         return "runs backward in time"
     if link.producer == 0:
         timed = any(t.literal == link.literal for t in objects.problem.timed)
@@ -40,6 +40,11 @@ def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], ob
     if any(_touches(effect, binding, link.literal.fact, objects) for effect in effects):
         return ""
     return f"supports nothing: step {link.producer} does not achieve it"
+
+
+def _is_own(link: Link, bound: Bound) -> bool:
+    """Whether the start of a step with a duration, maybe of 0, supports a later condition of the step itself."""
+    return link.producer == link.consumer and bound[link.producer][0].duration is not None
 
 
 def _touches(effect: Effect, binding: Binding, fact: Fact, objects: Objects) -> bool:

@@ -105,7 +105,8 @@ def simulate(plan: Plan, domain: Domain, objects: Objects) -> Work[list[Event]]:
         )
         world = world.changed(achieved)
         if "over" in moment.moments:
-            requirements += world.requirements(_formulas(action, ["over"]), binding)
+            lasting = _formulas(action, ["over"])  # of a step that takes no time they may fail
+            requirements += world.requirements([f for f in lasting if world.holds(f, binding)], binding)
         events.append(Event(step.id, requirements, prevented))
         yield
     return [*events, Event(GOAL, world.requirements([problem.goal], {}), {})]

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from tailor.executive.planning import GOAL, Link, Literal, Settings, parse_plan, relink, suffix, validate
+from tailor.executive.planning import GOAL, Link, Literal, Settings, completed, parse_plan, relink, suffix, validate
 from tests.support.planning_problems import OWN, own, read, solve
 
 
@@ -80,6 +80,28 @@ def test_a_causal_link_that_supports_nothing_is_found(kitchen, link, fault):
 def test_wrong_times_are_found(soccer, position, changes, fault):
     plan, domain, problem = soccer
     assert fault in validate(changed(plan, position, **changes), domain, problem)
+
+
+FLASH = """(define (domain flash) (:requirements :durative-actions) (:predicates (on) (burnt) (g))
+  (:durative-action flash :parameters () :duration (= ?duration 0)
+    :condition (over all (on)) :effect (and (at start (on)) (at end (g))))
+  (:durative-action burn :parameters () :duration (= ?duration 0)
+    :condition (over all (or (not (burnt)) (not (on)))) :effect (and (at start (burnt)) (at start (on)))))"""
+
+
+@pytest.mark.parametrize("ground", [True, False])
+def test_the_start_of_a_step_that_takes_no_time_supports_the_step_itself(ground):
+    domain, problem = read(FLASH, "(define (problem p) (:domain flash) (:init) (:goal (g)))")
+    plan = solve(domain, problem, Settings(ground=ground)).plan
+    assert Link(1, Literal(("on",)), 1) in plan.links
+    assert validate(plan, domain, problem) == ""
+
+
+def test_of_a_step_that_takes_no_time_a_condition_over_all_may_fail_and_has_no_link():
+    domain, problem = read(FLASH, "(define (problem p) (:domain flash) (:init) (:goal (burnt)))")
+    plan = completed(parse_plan("1: (burn) [0]"), domain, problem)
+    assert plan.links == (Link(1, Literal(("burnt",)), GOAL),)
+    assert validate(plan, domain, problem) == ""
 
 
 def test_simultaneous_events_that_disturb_each_other_are_found():
