@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
 from tailor.executive.planning.pddl.language import Domain, Formula, Literal, Typed
-from tailor.executive.planning.pddl.syntax.s_expressions import read_form
+from tailor.executive.planning.pddl.syntax.s_expressions import read_form, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,8 @@ class Problem:
     values: Mapping[Fact, float] = field(default_factory=dict)  # of static functions
     timed: tuple[TimedLiteral, ...] = ()
     metric: OneOf["", "makespan", "cost"] = ""
-    _read: dict[str, Formula] = field(default_factory=dict, compare=False, repr=False)  # goals, by text
+    # goals with their texts in one line, by the text as given
+    _read: dict[str, tuple[Formula, str]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_initial(self, facts: Iterable[Fact]) -> Problem:
         """The same problem from another initial state.
@@ -59,7 +60,9 @@ class Problem:
           PddlError: The text is not a goal over this domain and these objects.
         """
         if goal not in self._read:
-            formula = read_formula(read_form(goal, "goal"), Scope.of(self.domain, self.objects))
+            form = read_form(goal, "goal")
+            formula = read_formula(form, Scope.of(self.domain, self.objects))
             self._read.clear()
-            self._read[goal] = formula
-        return replace(self, goal=self._read[goal], goal_text=" ".join(goal.lower().split()))
+            self._read[goal] = formula, text_of(form)
+        formula, text = self._read[goal]
+        return replace(self, goal=formula, goal_text=text)

@@ -13,12 +13,12 @@ from tailor.executive.planning.pddl.numeric_reader import number_of
 from tailor.executive.planning.pddl.problem import Problem, TimedLiteral
 from tailor.executive.planning.pddl.syntax.s_expressions import (
     Form,
-    Node,
     Place,
     Word,
     form_of,
     parts_in_order,
     read_form,
+    text_of,
     word_of,
 )
 from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, read_typed
@@ -92,7 +92,7 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
         case ":goal":
             expect(form, 1)
             draft.goal = read_formula(rest[0], Scope.of(domain, draft.objects))
-            draft.goal_text = _text_of(rest[0])
+            draft.goal_text = text_of(rest[0])
         case ":metric":
             _read_metric(form, draft)
         case ":length":
@@ -179,14 +179,8 @@ def _read_value(form: Form, draft: _Draft, scope: Scope) -> None:
 def _read_metric(form: Form, draft: _Draft) -> None:
     expect(form, 2)
     direction = word_of(form.items[1], "minimize")
-    quantity = _text_of(form.items[2])
+    quantity = text_of(form.items[2])
     name = quantity[1:-1] if quantity[0] == "(" else quantity
     if direction != "minimize" or name not in _METRICS:
         raise form.place.unsupported(f"the metric {direction} {quantity}")
     draft.metric = _METRICS[name]
-
-
-def _text_of(node: Node) -> str:
-    if isinstance(node, Word):
-        return node.text
-    return f"({' '.join(_text_of(item) for item in node.items)})"

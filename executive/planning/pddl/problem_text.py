@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from decimal import Decimal
 
-from tailor.executive.planning.pddl.formula_text import format_atom, format_number
+from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Typed
 from tailor.executive.planning.pddl.problem import Problem
 
@@ -45,5 +46,11 @@ def _object(item: Typed, typed: bool) -> str:
 
 def _initial(problem: Problem) -> Iterator[str]:
     yield from map(format_atom, problem.initial)
-    yield from (f"(= {format_atom(function)} {format_number(value)})" for function, value in problem.values.items())
-    yield from (f"(at {format_number(timed.time_s)} {timed.literal})" for timed in problem.timed)
+    yield from (f"(= {format_atom(function)} {_exact(value)})" for function, value in problem.values.items())
+    yield from (f"(at {_exact(timed.time_s)} {timed.literal})" for timed in problem.timed)
+
+
+def _exact(value: float) -> str:
+    """A number with all its decimals, without an exponent, which not every planner reads."""
+    text = f"{Decimal(repr(float(value))):f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

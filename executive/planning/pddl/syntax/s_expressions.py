@@ -135,6 +135,13 @@ def form_of(node: Node, what: str) -> Form:
     raise node.place.error(f"expected {what}, found '{node.text}'")
 
 
+def text_of(node: Node) -> str:
+    """The node as text in one line, without comments."""
+    if isinstance(node, Word):
+        return node.text
+    return f"({' '.join(text_of(item) for item in node.items)})"
+
+
 def parts_in_order(form: Form, what: str, order: tuple[str, ...], repeated: frozenset[str]) -> list[Form]:
     """The parts of a definition, sorted so that declarations come before their uses.
 

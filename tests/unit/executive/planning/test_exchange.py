@@ -48,6 +48,20 @@ def test_types_values_timed_literals_and_the_metric_are_written_too():
     assert parse_problem(format_problem(problem), domain) == problem
 
 
+@pytest.mark.parametrize("number", ["1e-10", "0.12345678901234", "987654321.123456", "-2.5e-7", "1e9", "0"])
+def test_numbers_are_written_with_all_their_decimals(number):
+    domain, problem = read(RICH_DOMAIN, RICH_PROBLEM.replace("2.25", number).replace("50.5", "3.0000000012"))
+    assert "e" not in format_problem(problem).partition("time-for c)")[2].partition(")")[0]
+    assert parse_problem(format_problem(problem), domain) == problem
+
+
+def test_a_goal_with_comments_is_written_without_them():
+    domain, problem = read(RICH_DOMAIN, RICH_PROBLEM)
+    asked = problem.with_goal("(and (washed c) ; the cup\n (open dock)) ; and no more")
+    assert asked.goal_text == "(and (washed c) (open dock))"
+    assert parse_problem(format_problem(asked), domain) == asked
+
+
 @pytest.mark.parametrize("name", domain_names())
 def test_every_scenario_of_every_domain_can_be_asked(name):
     loaded = domains.load(name)
