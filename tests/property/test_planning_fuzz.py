@@ -131,6 +131,10 @@ def of_type(number):
     return one_action(f"a{number}", "(p ?x)", parameters=f"?x - t{number}")
 
 
+def numbered(name, count):
+    return " ".join(f"{name}{n}" for n in range(count))
+
+
 BOMBS = {
     "thousands of actions": lambda: solve(
         *read(domain_of("d", *(one_action(f"a{n}") for n in range(4400))), ANY.format("d", objects(3)))
@@ -216,6 +220,16 @@ BOMBS = {
                 (:predicates (p ?x)) {" ".join(of_type(n) for n in range(450))})""",
             f"(define (problem x) (:domain d) (:objects {objects(9000)} - t0) (:goal (p o1)))",
         )
+    ),
+    "a choice of one type, thousands of times": lambda: parse_domain(
+        f"""(define (domain d) (:types a b) (:predicates (p ?x - (either {"a " * 30_000})))
+            (:action a :parameters (?x - (either {"b " * 30_000})) :effect (p ?x)))"""
+    ),
+    "a choice of hundreds of types in thousands of places": lambda: parse_domain(
+        f"""(define (domain d) (:types {numbered("a", 240)} {numbered("b", 240)} c)
+            (:predicates (p ?x - (either {numbered("a", 240)} c)) (q))
+            (:action a :parameters (?x - (either {numbered("b", 240)} c))
+              :precondition (and {"(p ?x) " * 20_000}) :effect (r)))"""
     ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
 }

@@ -33,12 +33,14 @@ MOMENTS: Mapping[tuple[str, str], When] = {("at", "start"): "start", ("at", "end
 class Scope:
     """The names that a formula may use: those of the domain, and the visible terms with their types.
 
-    `parts` counts, for all formulas of a text, the parts that derived predicates became.
+    `parts` counts, for all formulas of a text, the parts that derived predicates became. `fitting` keeps for pairs of
+    types whether an object may be of both: an `either` of hundreds is compared once, not for every atom.
     """
 
     domain: Domain
     terms: Mapping[str, tuple[str, ...]]
     parts: Counter[str] = field(default_factory=Counter, compare=False)
+    fitting: dict[tuple[tuple[str, ...], tuple[str, ...]], bool] = field(default_factory=dict, compare=False)
 
     @classmethod
     def of(cls, domain: Domain, objects: Iterable[Typed]) -> Scope:
@@ -47,15 +49,18 @@ class Scope:
 
     def extended(self, names: Iterable[Typed]) -> Scope:
         """This scope with more terms, which hide earlier ones of the same name."""
-        return Scope(self.domain, {**self.terms, **{t.name: t.types for t in names}}, self.parts)
+        return Scope(self.domain, {**self.terms, **{t.name: t.types for t in names}}, self.parts, self.fitting)
 
     def may_be(self, term: str, types: tuple[str, ...]) -> bool:
         """Whether the term may be of one of the types."""
         own = self.terms[term]
         if own == types:
             return True
-        ancestors = self.domain.ancestors
-        return any(b in ancestors[a] or a in ancestors[b] for a in own for b in types)
+        if (own, types) not in self.fitting:
+            ancestors = self.domain.ancestors
+            related = any(b in ancestors[a] or a in ancestors[b] for a in own for b in types)
+            self.fitting[own, types] = related
+        return self.fitting[own, types]
 
 
 def read_formula(node: Node, scope: Scope) -> Formula:

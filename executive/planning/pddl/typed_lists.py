@@ -63,7 +63,7 @@ def _types(
     for word, kind in zip(words, types, strict=True):
         if declared is not None and kind not in declared:
             raise word.place.error(f"unknown type '{kind}'")
-    return types
+    return tuple(dict.fromkeys(types))  # each once: every atom over the name compares them
 
 
 def _alternatives(node: Form) -> list[Node]:
