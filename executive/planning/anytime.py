@@ -8,6 +8,7 @@ from typing import Any
 
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.planning.best_first import BestFirst
+from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
@@ -79,7 +80,11 @@ class AnytimeSearch:
             return
         self.value = quality(first.plan, self._problem)
         yield first
-        yield from self._improvements()
+        try:
+            yield from self._improvements()
+        except TooMuchToGround as reason:  # lifted search meets some conditions only here
+            self.ended = str(reason)
+            yield None
 
     def _improvements(self) -> Iterator[Result | None]:
         """Better and better plans; sets `ended` before the last yield."""

@@ -148,3 +148,19 @@ def test_the_makespan_ranking_alone_no_longer_decides_what_is_found(monkeypatch)
     result = solve(domain, hard, Settings(flaw_orders=MATCHING.flaw_orders))
     assert result.status == "solved"
     assert result.generated <= 3 * solve(domain, problem).generated
+
+
+def test_a_condition_with_too_many_instances_ends_the_second_search_at_a_limit():
+    makers = " ".join(f"(:action m{n} :parameters () :effect (h{n}))" for n in range(3))
+    domain, problem = read(
+        f"""(define (domain d) (:predicates (g) (h0) (h1) (h2) (q ?x ?y)) (:functions (total-cost)) {makers}
+          (:action fill :parameters (?x ?y) :precondition (h0) :effect (q ?x ?y))
+          (:action free :parameters (?x ?y) :precondition (and (h0) (h1) (h2) (not (q ?x ?y))) :effect (g))
+          (:action paid :parameters () :effect (and (g) (increase (total-cost) 5))))""",
+        f"""(define (problem x) (:domain d) (:objects {" ".join(f"o{n}" for n in range(51))}) (:init) (:goal (g))
+          (:metric minimize (total-cost)))""",
+    )
+    search, results = improvements(domain, problem, Settings(ground=False))
+    assert [step.action for step in search.best.plan.steps] == [("paid",)]
+    assert search.ended == "'not q' has more than 2500 instances"
+    assert len(results) == 1
