@@ -129,15 +129,16 @@ def _reads(part: _Moments, changed: Changed, world: StaticWorld) -> frozenset[Fa
     terms: Terms = {name: (value,) for name, value in part.binding.items()}
     read = [(condition, terms) for condition in part.schema.conditions]
     for effect in part.schema.effects:
-        inner = _chosen(effect.variables, terms, world)
-        read += [(condition, inner) for condition in effect.condition]
+        if (inner := _chosen(effect.variables, terms, world)) is not None:
+            read += [(condition, inner) for condition in effect.condition]
     own = ((condition.formula, inner) for condition, inner in read if condition.when in part.moments)
     return frozenset(fact for formula, inner in own for fact in _mentioned(formula, inner, changed, world))
 
 
-def _chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Terms:
-    """The terms with variables that stand for all objects of their types."""
-    return {**terms, **{variable.name: world.choices(variable) for variable in variables}}
+def _chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Terms | None:
+    """The terms with variables that stand for all objects of their types; None if there are none for one of them."""
+    choices = {variable.name: world.choices(variable) for variable in variables}
+    return {**terms, **choices} if all(choices.values()) else None
 
 
 def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
@@ -151,7 +152,8 @@ def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWo
             for part in parts:
                 yield from _mentioned(part, terms, changed, world)
         case Quantified(_, variables, part):
-            yield from _mentioned(part, _chosen(variables, terms, world), changed, world)
+            if (inner := _chosen(variables, terms, world)) is not None:
+                yield from _mentioned(part, inner, changed, world)
         case Equal():
             pass
 

@@ -41,6 +41,7 @@ def reads(action: Action, moments: tuple[str, ...], binding: Binding, facts: fro
     return any(
         _any_reads(effect.condition, moments, {**binding, **{v.name: v for v in effect.variables}}, facts, objects)
         for effect in action.effects
+        if all(objects.of(variable) for variable in effect.variables)
     )
 
 
@@ -61,7 +62,8 @@ def _reads(formula: Formula, terms: Terms, facts: frozenset[Fact], objects: Obje
         case And(parts) | Or(parts):
             return any(_reads(part, terms, facts, objects) for part in parts)
         case Quantified(_, variables, part):
-            return _reads(part, {**terms, **{v.name: v for v in variables}}, facts, objects)
+            inner = {**terms, **{v.name: v for v in variables}}
+            return all(objects.of(v) for v in variables) and _reads(part, inner, facts, objects)
 
 
 def _names(atom: Atom, terms: Terms, fact: Fact, objects: Objects) -> bool:

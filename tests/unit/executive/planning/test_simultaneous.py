@@ -136,3 +136,15 @@ def test_a_quantifier_over_millions_of_objects_that_grounding_decides_at_once_ta
     assert validate(result.plan, domain, problem) == ""
     times = starts(result)
     assert abs(times["one",] - times["two",]) == pytest.approx(0.01)  # one of the alternatives is changed
+
+
+@pytest.mark.parametrize("settings", BOTH, ids=["ground", "lifted"])
+def test_a_quantifier_over_no_objects_reads_nothing(settings):
+    actions = [
+        action("one", "(at start (forall (?n - none) (r)))", "(at end (g))"),
+        action("two", "", "(at start (r)) (at end (q))"),
+    ]
+    domain, problem = task(["(:types none)", *actions], "", "(q) (g)")
+    result = solve(domain, problem, settings)
+    assert validate(result.plan, domain, problem) == ""
+    assert len(set(starts(result).values())) == 1

@@ -5,8 +5,8 @@ import pytest
 from tailor.executive.planning import parse_plan, validate
 from tests.support.planning_problems import read
 
-DOMAIN = """(define (domain d) (:requirements :adl :durative-actions) (:types big small) (:constants a - big b - small)
-  (:predicates (p ?o) (s ?o ?u) (q) (g))
+DOMAIN = """(define (domain d) (:requirements :adl :durative-actions) (:types big small none)
+  (:constants a - big b - small) (:predicates (p ?o) (s ?o ?u) (q) (g))
   (:durative-action write :parameters (?x ?y) :duration (= ?duration 2) :effect (and (at start (p ?x))
     (at start (s ?x ?y)) (at end (q))))
   (:durative-action look :parameters (?x) :duration (= ?duration 2) :condition {} :effect (and {} (at end (g)))))"""
@@ -26,11 +26,13 @@ TRUE = "(at start (p b))"
         ("(at start (exists (?z) (s ?z ?z)))", "", False),
         ("(at start (exists (?z) (s ?x ?z)))", "", True),
         ("(at start (exists (?x - small) (s ?x ?x)))", "", False),
+        ("(at start (forall (?z - none) (p ?x)))", "", False),
         ("(over all (p ?x))", "", False),
         ("(at end (p ?x))", "", False),
         (TRUE, "(when (at start (p ?x)) (at end (q)))", True),
         (TRUE, "(forall (?z) (when (at start (p ?z)) (at end (q))))", True),
         (TRUE, "(forall (?z - small) (when (at start (p ?z)) (at end (q))))", False),
+        (TRUE, "(forall (?z - none) (when (at start (p ?x)) (at end (q))))", False),
     ],
 )
 def test_what_a_simultaneous_event_makes_true_again_is_a_moving_target(condition, effect, disturbed):
