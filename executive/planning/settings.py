@@ -13,6 +13,7 @@ from tailor.schemas.errors import UsageError
 
 EngineName = OneOf["auto", "pocl", "forward"]
 MIN_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
+MAX_TICK_S = 1e3
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ class Settings:
         check_rankings(self.rankings)
         if not 0 <= self.weight < math.inf:
             raise UsageError(f"planner settings: expected a finite weight of at least 0, found {self.weight}")
-        if not MIN_TICK_S <= self.tolerance_s <= 1e3:
+        if not MIN_TICK_S <= self.tolerance_s <= MAX_TICK_S:
             raise UsageError(f"planner settings: expected a tolerance in [1e-6, 1000] s, found {self.tolerance_s}")
         if self.seed < 0:
             raise UsageError(f"planner settings: expected a seed of at least 0, found {self.seed}")

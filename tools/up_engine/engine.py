@@ -32,6 +32,7 @@ from tailor.executive.planning import (
     validate,
     validate_every_order,
 )
+from tailor.executive.planning.settings import MAX_TICK_S, MIN_TICK_S
 from tailor.schemas.errors import UsageError
 from tailor.tools.plan_search.limits import Limits
 from tailor.tools.up_engine import NAME
@@ -93,7 +94,7 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
     ) -> PlanGenerationResult:
         _warn_of_unused(heuristic=heuristic, output_stream=output_stream)
         try:
-            task = Translation.of(problem)
+            task = self._task(problem)
         except UsageError as reason:
             return self._refused(reason)
         limits = self._limits(timeout)
@@ -106,7 +107,7 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
     ) -> Iterator[PlanGenerationResult]:
         _warn_of_unused(output_stream=output_stream)
         try:
-            task = Translation.of(problem)
+            task = self._task(problem)
         except UsageError as reason:
             yield self._refused(reason)
             return
@@ -119,6 +120,19 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
         best = search.best or Result("limit", None, limits.reason, *search.counts)
         optimal = best.plan is not None and search.ended == "proven" and problem.quality_metrics and not task.timed
         yield self._result(task, best, Status.SOLVED_OPTIMALLY if optimal else _status(best, task, limits))
+
+    def _task(self, problem: Any) -> Translation:
+        """The translation of a problem whose epsilon can be a tick.
+
+        Raises:
+          UsageError: As `Translation.of`.
+          Unsupported: The epsilon is too small or too large.
+        """
+        task = Translation.of(problem)
+        if "tolerance_s" not in self._settings and not MIN_TICK_S <= task.tick_s <= MAX_TICK_S:
+            expected = f"expected {MIN_TICK_S:g} to {MAX_TICK_S:g} s"
+            raise Unsupported(f"an epsilon of {task.tick_s:g} s is not supported; {expected}")
+        return task
 
     def _settings_of(self, task: Translation) -> Settings:
         return Settings(**{"tolerance_s": task.tick_s, **self._settings})

@@ -9,12 +9,14 @@ from typing import Any
 
 from unified_planning.exceptions import UPException
 from unified_planning.io import PDDLWriter
+from unified_planning.model.walkers import Simplifier
 from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, TimeTriggeredPlan
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning import Domain, Plan, Problem, Step, Unsupported, parse_domain, parse_problem
 
 DEFAULT_TICK_S = 0.01
+ROUNDING_S = Fraction(1, 10**9)  # our times are whole nanoseconds
 EXACT_TICK_S = 1e-6  # of plans to validate: their times are fractions, not rounded to ticks
 
 
@@ -50,8 +52,8 @@ class Translation:
 
     @property
     def tick_s(self) -> float:
-        """The least time between dependent events: the problem's epsilon, or our default."""
-        return float(self.original.epsilon) if self.original.epsilon else DEFAULT_TICK_S
+        """The least time between dependent events: the problem's epsilon, or our default; that without times, too."""
+        return float(self.original.epsilon) if self.timed and self.original.epsilon else DEFAULT_TICK_S
 
     # --- plans -----------------------------------------------------------------------------------
     def to_unified(self, plan: Plan) -> Any:
@@ -63,8 +65,7 @@ class Translation:
                 after[instances[i]].append(instances[j])
             return PartialOrderPlan(after, self.original.environment)
         timed = [
-            (_fraction(step.start), instances[step.id], _fraction(step.duration) if self._lasts(step) else None)
-            for step in plan.steps
+            (_fraction(step.start), instances[step.id], self._duration(step, instances[step.id])) for step in plan.steps
         ]
         return TimeTriggeredPlan(timed, self.original.environment)
 
@@ -79,7 +80,8 @@ class Translation:
                 Step(n, self._fact(action), float(start), float(duration or 0))
                 for n, (start, action, duration) in enumerate(plan.timed_actions, 1)
             ]
-            return self._plan(sorted(steps, key=lambda step: step.start), ())
+            orderings = [(a.id, b.id) for a in steps for b in steps if a.start < b.start]
+            return self._plan(sorted(steps, key=lambda step: step.start), orderings)
         if plan.kind is PlanKind.PARTIAL_ORDER_PLAN:
             after = plan.get_adjacency_list
             ids = {action: n for n, action in enumerate(after, 1)}
@@ -100,8 +102,20 @@ class Translation:
         items = [instance.action, *(parameter.object() for parameter in instance.actual_parameters)]
         return tuple(self.writer.get_pddl_name(item) for item in items)
 
-    def _lasts(self, step: Step) -> bool:
-        return any(action.name == step.action[0] and action.duration is not None for action in self.domain.actions)
+    def _duration(self, step: Step, instance: ActionInstance) -> Fraction | None:
+        """The duration of a step, None of an instantaneous action.
+
+        A limit of the action's durations that PDDL text rounds, such as 1/3, is kept as it is.
+        """
+        if not any(action.name == step.action[0] and action.duration is not None for action in self.domain.actions):
+            return None
+        duration, simplifier = _fraction(step.duration), Simplifier(self.original.environment, self.original)
+        objects = dict(zip(instance.action.parameters, instance.actual_parameters, strict=True))
+        for limit in (instance.action.duration.lower, instance.action.duration.upper):
+            value = simplifier.simplify(limit.substitute(objects))
+            if value.is_constant() and abs(Fraction(value.constant_value()) - duration) < ROUNDING_S:
+                return Fraction(value.constant_value())
+        return duration
 
 
 def reduced(orderings: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:

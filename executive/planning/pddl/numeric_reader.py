@@ -23,7 +23,7 @@ def read_duration(node: Node, action: Form, scope: Scope) -> tuple[DurationBound
       scope: The action's parameters, and the domain with its functions.
 
     Raises:
-      PddlError: Malformed, or more numbers than `MAX_NUMBERS`.
+      PddlError: Malformed, or more numbers than `MAX_NUMBERS`; `Unsupported`: a strict limit.
     """
     bounds = _duration(node, scope)
     if sum(numbers_in(bound.value) for bound in bounds) > MAX_NUMBERS:
@@ -54,6 +54,8 @@ def _duration(node: Node, scope: Scope) -> tuple[DurationBound, ...]:
         return tuple(bound for part in form.items[1:] for bound in _duration(part, scope))
     if form.head == "at" and len(form.items) == 3:
         return _duration(form.items[2], scope)
+    if form.head in {"<", ">"}:
+        raise form.place.unsupported(f"a strict limit of a duration ({form.head} ...)")
     if form.head not in {"=", "<=", ">="}:
         raise form.place.error("expected (= ?duration ...), (<= ?duration ...) or (>= ?duration ...)")
     expect(form, 2)

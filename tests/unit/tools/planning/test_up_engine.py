@@ -19,14 +19,17 @@ from unified_planning.shortcuts import (
     AnytimePlanner,
     BoolType,
     Compiler,
+    Div,
     DurativeAction,
     EndTiming,
     Fluent,
     InstantaneousAction,
+    Int,
     MinimizeActionCosts,
     OneshotPlanner,
     PlanValidator,
     Problem,
+    RealType,
     get_environment,
 )
 from unified_planning.test.examples import get_example_problems
@@ -205,6 +208,56 @@ def test_durations_of_given_plans_are_exact_whatever_the_epsilon(epsilon, durati
     plan = TimeTriggeredPlan([(Fraction(0), action, Fraction(duration))])
     with PlanValidator(name="tailor") as validator:
         assert validator.validate(problem, plan).status is status
+
+
+@pytest.mark.parametrize("seconds", [1e-7, 2000.0])
+def test_an_epsilon_that_is_no_tick_is_not_supported(seconds):
+    problem = lasting(5)
+    problem.epsilon = seconds
+    message = f"an epsilon of {seconds:g} s is not supported; expected 1e-06 to 1000 s"
+    with OneshotPlanner(name="tailor") as planner, AnytimePlanner(name="tailor") as anytime:
+        for result in (planner.solve(problem), *anytime.get_solutions(problem)):
+            assert result.status is Status.UNSUPPORTED_PROBLEM
+            assert [logged.message for logged in result.log_messages] == [message]
+    with OneshotPlanner(name="tailor", params={"tolerance_s": 0.1}) as planner:
+        assert planner.solve(problem).plan.timed_actions[0][0] == Fraction("0.1")
+
+
+def test_a_negative_cost_and_a_strict_limit_of_a_duration_are_not_supported():
+    costly, strict = two_ways(), lasting(5)
+    costly.quality_metrics[0].costs[costly.action("jump")] = Int(-1)
+    strict.action("act").set_open_duration_interval(1, 2)
+    for problem, message in ((costly, "a cost below 0"), (strict, "a strict limit of a duration (> ...)")):
+        with OneshotPlanner(name="tailor") as planner:
+            result = planner.solve(problem)
+        assert result.status is Status.UNSUPPORTED_PROBLEM
+        assert f"{message} is not supported" in result.log_messages[0].message
+
+
+@pytest.mark.filterwarnings("ignore:The PDDL printer cannot exactly represent")
+@pytest.mark.parametrize("is_parametric", [False, True])
+def test_durations_that_pddl_text_rounds_are_exact(is_parametric):
+    problem = lasting(Fraction(1, 3))
+    if is_parametric:
+        length = problem.add_fluent("length", RealType(), default_initial_value=Fraction(2, 3))
+        problem.action("act").set_fixed_duration(Div(length(), 2))
+    with OneshotPlanner(name="tailor") as planner:
+        plan = planner.solve(problem).plan
+    assert plan.timed_actions[0][2] == Fraction(1, 3)
+    assert their_verdicts(problem, plan) == {ValidationResultStatus.VALID}
+
+
+@pytest.mark.parametrize(
+    ("starts", "status"),
+    [((0, 1, 2), ValidationResultStatus.VALID), ((2, 1, 0), ValidationResultStatus.INVALID)],
+)
+def test_a_time_triggered_plan_of_a_problem_without_time_is_validated_in_its_order(starts, status):
+    problem = two_ways()
+    steps = [ActionInstance(problem.action(f"Walk {n}")) for n in range(3)]
+    plan = TimeTriggeredPlan([(Fraction(start), step, None) for start, step in zip(starts, steps, strict=True)])
+    with PlanValidator(name="tailor") as validator:
+        assert validator.validate(problem, plan).status is status
+    assert their_verdicts(problem, plan) == {status}
 
 
 def test_orderings_that_others_imply_are_left_out():
