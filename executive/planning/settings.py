@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
@@ -14,6 +13,7 @@ from tailor.schemas.errors import UsageError
 EngineName = OneOf["auto", "pocl", "forward"]
 MIN_TICK_S = 1e-6  # PDDL's longest duration is 1e15 of these, and a plan's bounds must stay below UNBOUNDED
 MAX_TICK_S = 1e3
+MAX_WEIGHT = 1e100  # the largest estimate is 1e200, and a rank must stay finite: an infinite one is never searched
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Settings:
       flaw_orders: One or more; several are used in round robin.
       search: A* ("A") or IDA* ("IDA").
       ground: Plan with ground actions; False: with variables (lifted).
-      weight: Weight of the heuristic against the cost of the steps, finite and at least 0.
+      weight: Weight of the heuristic against the cost of the steps, in [0, 1e100].
       action_cost: Cost of a step: 1, its duration in seconds, its duration relative to the shortest action, or what it
         adds to (total-cost).
       node_limit: Maximum number of generated plans, and of evaluated states.
@@ -70,8 +70,8 @@ class Settings:
         for order in self.flaw_orders:
             parse_flaw_order(order.text)
         check_rankings(self.rankings)
-        if not 0 <= self.weight < math.inf:
-            raise UsageError(f"planner settings: expected a finite weight of at least 0, found {self.weight}")
+        if not 0 <= self.weight <= MAX_WEIGHT:
+            raise UsageError(f"planner settings: expected a weight in [0, {MAX_WEIGHT:g}], found {self.weight}")
         if not MIN_TICK_S <= self.tolerance_s <= MAX_TICK_S:
             raise UsageError(f"planner settings: expected a tolerance in [1e-6, 1000] s, found {self.tolerance_s}")
         if self.seed < 0:

@@ -239,8 +239,9 @@ def test_unknown_rankings_and_bad_settings_are_told():
         solve(*own("soccer-p1"), Settings(("ADD", "ADDR")))
     with pytest.raises(UsageError, match="at least one flaw order"):
         Settings(flaw_orders=())
-    with pytest.raises(UsageError, match="weight"):
-        Settings(weight=float("nan"))
+    for weight in (float("nan"), 1e101):
+        with pytest.raises(UsageError, match="weight"):
+            Settings(weight=weight)
     with pytest.raises(UsageError, match="tolerance"):
         Settings(tolerance_s=0)
     for name in ("node_limit", "step_limit", "ground_limit"):
