@@ -9,6 +9,8 @@ from tailor.executive.planning.forward.strips_task import NotClassical, StripsAc
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.plans.plan import Result
+from tailor.executive.planning.results import goal_unreachable
+from tailor.executive.planning.structures.connectives import FALSE
 
 
 class ForwardEngine:
@@ -51,6 +53,9 @@ class ForwardEngine:
     def run(self) -> Iterator[Result | None]:
         """Evaluates one state per iteration; yields None until the result."""
         search, strips = self._search, self._strips
+        if FALSE in self._task.goal:
+            yield goal_unreachable()
+            return
         if search is None or strips is None:
             yield Result("unsupported", None, self._unsupported, 0, 0)
             return

@@ -75,6 +75,16 @@ def test_an_exhausted_state_space_proves_that_there_is_no_plan():
     assert solve(domain, both_held, Settings(engine="auto")).status == "unsolvable"
 
 
+@pytest.mark.parametrize("goal", ["(cup-at cup1 nowhere)", "(and (hand-empty) (not (hand-empty)))", "(or)"])
+def test_a_goal_that_is_false_in_every_state_has_no_plan(goal):
+    domain, problem = read(
+        """(define (domain d) (:predicates (hand-empty) (cup-at ?cup ?place)) (:constants cup1 nowhere)
+          (:action release :parameters () :effect (hand-empty)))""",
+        f"(define (problem p) (:domain d) (:init) (:goal {goal}))",
+    )
+    assert solve(domain, problem, FORWARD).status == "unsolvable"
+
+
 def test_the_limit_of_states_ends_the_search():
     result = solve(*many_cups(8), Settings(engine="forward", node_limit=10))
     assert (result.status, result.visited) == ("limit", 10)
