@@ -139,7 +139,9 @@ def read_atom(form: Form, scope: Scope) -> Atom:
 
 
 def _atom(form: Form, scope: Scope) -> Atom:
-    name = word_of(form.items[0], "a predicate") if form.items else ""
+    if not form.items:
+        raise form.place.error("expected an atom such as (predicate argument), found ()")
+    name = word_of(form.items[0], "a predicate")
     parameters = scope.domain.predicates.get(name)
     if parameters is None:
         raise form.place.error(f"unknown predicate '{name}'")

@@ -44,6 +44,7 @@ def test_a_domain_with_names_that_are_none_is_refused(old, new, message):
         ("(r))", "(not (r)) (r))", "3:19: (r) and its opposite in the initial state"),
         ("(r))", "(r) (at 0 (not (r))))", "3:13: (not (r)) and its opposite in the initial state"),
         ("(r))", "(at 1_0 (r)))", "3:13: expected a number, found '1_0'"),
+        ("(r))", "(r) ())", "3:13: expected an atom such as (predicate argument), found ()"),
         (
             " (:goal",
             " (:metric minimize (total-time x)) (:goal",
