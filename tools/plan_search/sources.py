@@ -16,6 +16,7 @@ from tailor.tools.plan_search.limits import Limits
 
 if TYPE_CHECKING:
     from tailor.executive.planning import AnytimeSearch, Plan
+    from tailor.runtime.processes.planner_process import PlannerProcess
 
 GRACE_S = 5.0  # of kairos-planner, beyond its own time limit
 _POLL_S = 0.002  # period of polling an external planner
@@ -119,8 +120,7 @@ def anytime_beside_kairos(
     try:
         ours = _improved(search, limits)
         decided = search.ended == "proven" or ours.status == "unsolvable"
-        while not decided and child.poll() is None and not limits.interrupted:
-            time.sleep(_POLL_S)
+        _await(child, decided, limits)
     finally:
         child.kill()
     answer = None if decided else linked_answer(child, domain, problem)
@@ -131,6 +131,15 @@ def anytime_beside_kairos(
         return _reported(ours, search, limits), ""
     _report(search.measure, value, theirs, "by kairos-planner")
     return _reported(Result("solved", theirs, "", *search.counts), search, limits), "kairos"
+
+
+def _await(child: PlannerProcess, decided: bool, limits: Limits) -> None:
+    """Waits for a planner unless its answer is of no use any more; an interrupt ends the wait."""
+    try:
+        while not decided and child.poll() is None and not limits.interrupted:
+            time.sleep(_POLL_S)
+    except KeyboardInterrupt:
+        limits.interrupted = True
 
 
 def external(command: str, texts: tuple[str, str], domain: Domain, problem: Problem, limit_s: float) -> Result:

@@ -9,6 +9,7 @@ from tailor.executive.planning import Search, Settings, format_plan, validate
 from tailor.runtime.processes import planner_process
 from tailor.tools.benchmarks.execution.durative_plans import durative_problem_text
 from tailor.tools.benchmarks.planning import read, texts
+from tailor.tools.plan_search import sources
 from tailor.tools.plan_search.limits import Limits
 from tailor.tools.plan_search.sources import anytime_beside_kairos, with_kairos
 
@@ -45,6 +46,19 @@ def test_nobody_waits_for_kairos_if_no_plan_is_better(monkeypatch):
     plan, planner = planned(texts("kitchen-durative-s1")[1], 30.0)
     assert (len(plan.steps), planner) == (4, "")
     assert time.monotonic() - began < 20
+
+
+def test_an_interrupt_while_kairos_plans_keeps_the_plan_of_the_search(monkeypatch, capsys):
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(planner_process, "named_planner", lambda _: ["sh", "-c", "sleep 60"])
+    monkeypatch.setattr(sources.time, "sleep", interrupt)
+    pair = texts("kitchen-durative-s3")
+    problem = read(*pair)
+    result, planner = anytime_beside_kairos(pair, problem.domain, problem, Settings(node_limit=200), Limits())
+    assert (result.plan.makespan, planner) == (pytest.approx(56.08), "")
+    assert "best plan found" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("plan", [with_kairos, anytime_beside_kairos])
