@@ -231,6 +231,14 @@ BOMBS = {
             (:action a :parameters (?x - (either {numbered("b", 240)} c))
               :precondition (and {"(p ?x) " * 20_000}) :effect (r)))"""
     ),
+    "a choice among thousands of objects in thousands of actions": lambda: solve(
+        *read(
+            """(define (domain d) (:types t u small) (:predicates (p ?a ?b) (g)) (:action a :parameters (?a ?b - small)
+                :precondition (exists (?y - (either t u)) (= ?y ?y)) :effect (p ?a ?b)))""",
+            f"""(define (problem x) (:domain d) (:objects {objects(9000)} - t {numbered("s", 120)} - small)
+                (:goal (p s0 s1)))""",
+        )
+    ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
 }
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import (
@@ -113,13 +113,17 @@ class StaticWorld:
     facts: frozenset[Fact]  # facts of static predicates that hold
     values: Mapping[Fact, float]  # values of static functions
     temporal: bool  # whether any action takes time
+    _either: dict[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def choices(self, variable: Typed) -> tuple[str, ...]:
         """The objects of a variable's types."""
-        if len(variable.types) == 1:
-            return self.objects.get(variable.types[0], ())
-        allowed = {name for kind in variable.types for name in self.objects.get(kind, ())}
-        return tuple(name for name in self.objects["object"] if name in allowed)
+        types = variable.types
+        if len(types) == 1:
+            return self.objects.get(types[0], ())
+        if types not in self._either:  # asked for every ground action that has a quantifier
+            allowed = {name for kind in types for name in self.objects.get(kind, ())}
+            self._either[types] = tuple(name for name in self.objects["object"] if name in allowed)
+        return self._either[types]
 
 
 Binding = Mapping[str, str]
