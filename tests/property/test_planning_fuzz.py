@@ -239,6 +239,15 @@ BOMBS = {
                 (:goal (p s0 s1)))""",
         )
     ),
+    "thousands of effects under conditions that add and delete one fact": lambda: solve(
+        *read(
+            f"""(define (domain d) (:predicates (p) {" ".join(f"(c{n}) (d{n})" for n in range(2000))})
+                (:action b :parameters () :effect (and {" ".join(f"(c{n}) (d{n})" for n in range(2000))}))
+                (:action a :parameters () :effect (and
+                  {" ".join(f"(when (c{n}) (p)) (when (d{n}) (not (p)))" for n in range(2000))})))""",
+            "(define (problem x) (:domain d) (:goal (p)))",
+        )
+    ),
     "circle of types": lambda: parse_domain("(define (domain d) (:types a - b b - a) (:predicates (p ?x - a)))"),
 }
 

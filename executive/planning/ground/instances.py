@@ -61,7 +61,7 @@ def instance(
     stated = _effects(schema, binding, world, facts)
     required = {(part, span[1]) for part, span in conditions}
     useful = [effect for effect in stated if (effect.literal, effect.moment) not in required]
-    effects, restored = _without_restored(useful, stated)
+    effects, restored = _without_restored(useful, stated, facts)
     if not effects:
         return None
     return GroundAction(
@@ -125,7 +125,7 @@ def _bits(effects: Iterable[GroundEffect]) -> dict[int, int]:
 
 
 def _without_restored(
-    effects: list[GroundEffect], stated: list[GroundEffect]
+    effects: list[GroundEffect], stated: list[GroundEffect], facts: FactTable
 ) -> tuple[tuple[GroundEffect, ...], tuple[GroundEffect, ...]]:
     """The effects without those that the action undoes at once, and the latter.
 
@@ -139,6 +139,7 @@ def _without_restored(
     restored: list[GroundEffect] = []
     for effect in effects:
         additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+        facts.spend(max(len(additions) - 1, 0))  # each excludes one more condition
         variants = _unless_added(effect, additions)
         kept += variants
         restored += [] if variants else [effect]

@@ -74,7 +74,7 @@ def lifted_effects(
     for made in written:
         apart = _no_op(made, conditions)
         if apart is not None:
-            useful += [made._replace(guards=guards, apart=apart) for guards in _unless_added(made, written)]
+            useful += [made._replace(guards=guards, apart=apart) for guards in _unless_added(made, written, lifter)]
     return tuple(effect for effect in useful if all(guard.holds != FALSE for guard in effect.guards))
 
 
@@ -93,7 +93,7 @@ def _no_op(effect: LiftedEffect, conditions: Spanned) -> Pairs | None:
     return apart
 
 
-def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list[tuple[Guard, ...]]:
+def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect], lifter: Lifter) -> list[tuple[Guard, ...]]:
     """Alternative guards of an effect; those of a delete effect exclude the add effects of the same moment.
 
     An add effect with guards at several moments fails if those of one moment fail: each gives one alternative.
@@ -103,6 +103,7 @@ def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect]) -> list
         return variants
     for other in effects:
         if other.literal[0] == effect.literal[0] and other.literal.positive and other.moment == effect.moment:
+            lifter.spend()
             sparing = _sparing_guards(other, effect.literal)
             if all(guard.holds != TRUE for guard in sparing):
                 variants = [(*variant, guard) for variant in variants for guard in sparing]

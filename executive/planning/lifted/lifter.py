@@ -50,6 +50,14 @@ class Lifter:
                     return conjunction(self.lift(part, inner, positive) for inner in self.choices(variables, names))
                 return self._some(variables, part, names, positive)
 
+    def spend(self) -> None:
+        """Counts what takes as long as one more formula.
+
+        Raises:
+          TooMuchToGround: The limit is exceeded.
+        """
+        self._limit.spend()
+
     def choices(self, variables: tuple[Typed, ...], names: Names, steps: int = 1) -> Iterator[Names]:
         """All extensions of the names by objects for the variables; each counts as so many formulas."""
         for inner in bindings(variables, names, self._world):
