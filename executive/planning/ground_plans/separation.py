@@ -145,7 +145,11 @@ def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWo
     """The changed facts that a formula mentions, for all objects of its variables."""
     match formula:
         case Atom(predicate, names):
-            yield from (fact for fact in changed.get(predicate, ()) if _fits(names, fact[1:], terms))
+            facts, choices = changed.get(predicate, frozenset()), [terms.get(name, (name,)) for name in names]
+            if all(len(objects) == 1 for objects in choices):  # most atoms: no need to look at every fact
+                yield from facts & {(predicate, *(name for (name,) in choices))}
+            else:
+                yield from (fact for fact in facts if _fits(names, fact[1:], choices))
         case Not(part):
             yield from _mentioned(part, terms, changed, world)
         case And(parts) | Or(parts):
@@ -158,10 +162,9 @@ def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWo
             pass
 
 
-def _fits(names: Sequence[str], objects: Sequence[str], terms: Terms) -> bool:
-    """Whether names can stand for these objects, each for one only."""
+def _fits(names: Sequence[str], objects: Sequence[str], choices: Sequence[Sequence[str]]) -> bool:
+    """Whether names can stand for these objects, of those that each may choose from, and each for one only."""
     chosen = dict(zip(names, objects, strict=True))
     return all(
-        chosen[name] == actual and actual in terms.get(name, (name,))
-        for name, actual in zip(names, objects, strict=True)
+        chosen[name] == actual and actual in own for name, actual, own in zip(names, objects, choices, strict=True)
     )
