@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from tailor.executive.planning.pddl.syntax.errors import shortened
 from tailor.schemas.errors import UsageError
 
 # n, s: threat without or with a separation; o: open condition; among these t: static, l: local to the step of the
@@ -16,7 +17,7 @@ FLAW_TYPES = "nsotlu"
 HEURISTICS = ("add", "addr", "makespan")
 _PLAIN = ("LIFO", "FIFO", "R", "LR", "MR", "NEW", "REUSE")
 _ESTIMATED = ("LC", "MC", "LW", "MW")
-_CRITERION = re.compile(r"\{([a-z](?:,[a-z])*)\}(\d*)([A-Za-z]+)(?:_([A-Za-z]+))?")
+_CRITERION = re.compile(r"\{([a-z](?:,[a-z])*)\}([0-9]{0,18})([A-Za-z]+)(?:_([A-Za-z]+))?")
 
 NAMED = {
     "UCPOP": "{n,s}LIFO/{o}LIFO",
@@ -83,8 +84,8 @@ def _criterion(part: str, text: str) -> Criterion:
     match = _CRITERION.fullmatch(part)
     if match is None:
         raise UsageError(
-            f"flaw order '{text}': expected a name ({', '.join(NAMED)}) or criteria such as {{n,s}}LR/{{l}}MW_add, "
-            f"found '{part}'"
+            f"flaw order '{shortened(text)}': expected a name ({', '.join(NAMED)}) or criteria such as "
+            f"{{n,s}}LR/{{l}}MW_add, found '{shortened(part)}'"
         )
     types, limit, order, heuristic = match.groups()
     order, heuristic = order.upper(), (heuristic or "").lower()

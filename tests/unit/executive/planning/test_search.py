@@ -224,6 +224,7 @@ def test_own_flaw_orders_plan(criterion):
         ("{n,s}LR/{o}MW", "take _add"),
         ("{n,s}LR/{o}LR_add", "take _add"),
         ("{n,s}NEW/{o}LR", "orders open conditions, not threats"),
+        ("{n}" + "9" * 5000 + "LR/{n,s,o}LR", "found '{n}" + "9" * 54 + "...'"),
     ],
 )
 def test_malformed_flaw_orders_are_told(text, message):
