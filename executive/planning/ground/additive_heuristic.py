@@ -100,6 +100,7 @@ def estimate(
     pending: Iterable[GroundAction] = actions
     reached: dict[int, None] = {}
     relaxed = 0
+    stirred = set(range(len(actions)))  # whose conditions have changed since the starts alone were tried
     while pending:
         changed: dict[int, Value] = {}
         for action in pending:
@@ -111,7 +112,11 @@ def estimate(
         for literal, value in changed.items():
             values[literal] = value
         numbers = sorted({number for literal in changed for number in users[literal]})
-        pending = [actions[number] for number in numbers] or _starts(actions, values)
+        stirred.update(numbers)
+        pending = [actions[number] for number in numbers]
+        if not pending:
+            pending = _starts([actions[number] for number in sorted(stirred)], values)
+            stirred.clear()
     return Estimates(tuple(values), tuple(v.cost for v in values), tuple(v.work for v in values), tuple(reached))
 
 

@@ -89,7 +89,7 @@ class Reachability:
         if not plan.trigger.bind(fact, binding):
             return
         arguments = self._arguments[rule.action]
-        self._limit.depth = 0 if rule.is_action else 1  # the others are quantified effects, most of them
+        self._limit.depth = int(rule.is_quantified)
         for found in self._joined(plan.steps, binding):
             if found is None:
                 yield None

@@ -7,7 +7,7 @@ is one more. Only static and positive conjuncts are read: all other conditions a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tailor.executive.planning.ground.bindings import conjuncts_of, is_static
 from tailor.executive.planning.ground.ground_formula import StaticWorld
@@ -24,10 +24,11 @@ class Rule:
     tests: tuple[Formula, ...]  # equalities and negated static atoms
     head: tuple[Atom, ...]
     is_action: bool  # whether the variables are the parameters of the action
+    is_quantified: bool = False  # whether some may be those of an effect
 
 
 def rules_of(action: Action, world: StaticWorld) -> Iterator[Rule]:
-    """The rule of an action, then those of its conditional and quantified effects."""
+    """The rule of an action, those of its conditional and quantified effects, then those of its start alone."""
     own = {effect.atom.predicate for effect in action.effects if effect.positive and effect.when == "start"}
     literals = tuple(_usable(action.conditions, own if action.duration is not None else set(), world))
     added = [effect for effect in action.effects if effect.positive]
@@ -37,6 +38,21 @@ def rules_of(action: Action, world: StaticWorld) -> Iterator[Rule]:
         if effect.condition or effect.variables:
             more = tuple(_usable(effect.condition, own, world))
             yield _rule(action, action.parameters + effect.variables, literals + more, (effect.atom,), False)
+    if own and action.duration is not None:
+        yield from _start_rules(action, literals, own, world)
+
+
+def _start_rules(action: Action, literals: tuple[Formula, ...], own: set[str], world: StaticWorld) -> Iterator[Rule]:
+    """Rules of what a start makes true: that may serve an action which the later conditions wait for."""
+    at_start = tuple(condition for condition in action.conditions if condition.when == "start")
+    usable = tuple(_usable(at_start, own, world))
+    if all(part in usable or is_static(part, world) for part in literals):
+        return  # it has no later conditions that other actions achieve
+    for effect in action.effects:
+        if effect.positive and effect.when == "start":
+            more = tuple(_usable(effect.condition, own, world))
+            rule = _rule(action, action.parameters + effect.variables, usable + more, (effect.atom,), False)
+            yield replace(rule, is_quantified=bool(effect.variables))
 
 
 def _usable(conditions: tuple[Condition, ...], own: set[str], world: StaticWorld) -> Iterator[Formula]:
@@ -54,4 +70,5 @@ def _rule(
 ) -> Rule:
     parts = dict.fromkeys(literals)
     body = tuple(part for part in parts if isinstance(part, Atom))
-    return Rule(action.name, variables, body, tuple(p for p in parts if not isinstance(p, Atom)), head, whole)
+    tests = tuple(part for part in parts if not isinstance(part, Atom))
+    return Rule(action.name, variables, body, tests, head, whole, is_quantified=not whole)

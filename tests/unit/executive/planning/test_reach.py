@@ -168,6 +168,38 @@ def test_a_condition_that_the_actions_own_start_makes_true_needs_no_other_action
     assert solve(*read(domain, text)).status == "solved"
 
 
+BRIDGE = """(define (domain d) (:requirements :adl :durative-actions) (:predicates (at ?x) (held ?x) (road ?x ?y))
+  (:durative-action cross :parameters (?x ?y) :duration (= ?duration 5)
+    :condition (and (at start (road ?x ?y)) (at start (at ?x)) (at end (held ?y))) :effect {})
+  (:durative-action hold :parameters (?y) :duration (= ?duration 1) :condition (at start (at ?y))
+    :effect (at start (held ?y))))"""
+
+
+def bridge(effect, places, goal):
+    """A chain of places; crossing from one to the next ends only if the next is held, from where one is at once."""
+    roads = " ".join(f"(road o{n} o{n + 1})" for n in range(places - 1))
+    objects = " ".join(f"o{n}" for n in range(places))
+    text = f"(define (problem p) (:domain d) (:objects {objects}) (:init (at o0) {roads}) (:goal (at o{goal})))"
+    return read(BRIDGE.format(effect), text)
+
+
+@pytest.mark.parametrize(
+    "effect", ["(at start (at ?y))", "(forall (?z) (when (at start (road ?x ?z)) (at start (at ?z))))"]
+)
+def test_the_start_of_an_action_serves_those_that_its_end_waits_for(effect, by_reachability):
+    domain, problem = bridge(effect, 4, 3)
+    result = solve(domain, problem, Settings(node_limit=500))
+    assert {step.action[0] for step in result.plan.steps} == {"cross", "hold"}
+    assert validate(result.plan, domain, problem) == ""
+
+
+def test_thousands_of_starts_one_after_another_are_tried_once_each():
+    domain, problem = bridge("(at start (at ?y))", 3000, 2)
+    began = time.process_time()
+    assert solve(domain, problem).status == "solved"
+    assert time.process_time() - began < 10
+
+
 def test_facts_and_timed_literals_are_both_reached(by_reachability):
     domain = """(define (domain d) (:requirements :timed-initial-literals) (:predicates (open ?x) (in ?x))
       (:action enter :parameters (?x) :precondition (open ?x) :effect (in ?x)))"""
