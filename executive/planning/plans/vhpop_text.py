@@ -12,7 +12,7 @@ from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Pla
 EXCERPT_STEPS = 50
 MAX_BOUNDS = 81  # rows of the table of a durative plan, which grows with the square of its steps: 40 of them
 MAX_FACTS = 400  # of the initial state
-_COUNT = re.compile(r"^; first \d+ of (\d+) steps$", flags=re.MULTILINE)
+_COUNT = re.compile(r"^; first [0-9]+ of ([0-9]{1,12}) steps$", flags=re.MULTILINE)
 
 
 def format_plan(plan: Plan) -> str:

@@ -11,6 +11,7 @@ from tailor.executive.planning import (
     completed,
     format_links,
     format_plan,
+    number_of_steps,
     parse_plan,
     validate,
 )
@@ -133,3 +134,10 @@ def test_simultaneous_steps_that_take_no_time_have_no_order():
     domain, problem = read(INSTANT.format("()"), DONE.replace("(:init)", "(:init (p))"))
     linked = completed(parse_plan("1: (b)\n1: (b)\n2: (c) [1]"), domain, problem)
     assert linked.orderings == ((1, 3), (2, 3))
+
+
+@pytest.mark.parametrize(("number", "found"), [("120", 120), ("9" * 5000, None)])
+def test_the_number_of_steps_of_an_excerpt_is_one_that_can_be_read(number, found):
+    text = f";p\n; first 1 of {number} steps\n1:(a)\n"
+    assert len(parse_plan(text).steps) == 1
+    assert number_of_steps(text) == found
