@@ -66,8 +66,16 @@ class RandomEpisodes:
 
 
 @dataclass(frozen=True, slots=True)
+class OwnLearner:
+    """Learner of the durations and energies of an action that needs another one than most."""
+
+    action: str
+    learner: str
+
+
+@dataclass(frozen=True, slots=True)
 class Training:
-    """Options of `tailor train`, and kinds of models; empty: its defaults, all kinds."""
+    """Options of `tailor train`, kinds of models, and learners of single actions; empty: its defaults, all kinds."""
 
     kinds: tuple[Literal["duration", "success", "clearance", "energy", "duration_beside"], ...] = ()
     features: str = ""
@@ -75,6 +83,7 @@ class Training:
     learner: str = ""
     failure_learner: str = ""
     clearance_learner: str = ""
+    learners: tuple[OwnLearner, ...] = ()
     seed: int = 1
 
 
@@ -151,6 +160,7 @@ def _faults(recipe: Recipe) -> Iterator[str]:
     if recipe.objects > 0 and not recipe.beside:
         yield f"objects is {recipe.objects}, expected none without `beside`, the number of runs beside them"
     yield from _repeated("random", [each.action for each in recipe.random])
+    yield from _repeated("training.learners", [each.action for each in recipe.training.learners])
     for name, chosen in recipe.chosen:
         if not chosen.scenarios:
             yield f"{name}.scenarios is empty, expected at least one"

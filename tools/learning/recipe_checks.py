@@ -32,9 +32,11 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     actions = run_data_sets.modelled_actions(domain)
     for count in (recipe.episodes, recipe.beside, *(each.episodes for each in recipe.random)):
         random_episodes.check_number(count)
-    for each in recipe.random:
-        if each.action not in actions:
-            raise UsageError(f"random episodes of '{each.action}', expected one of: {', '.join(actions)}")
+    named = [("random episodes", each.action) for each in recipe.random]
+    named += [("a learner", each.action) for each in recipe.training.learners]
+    for what, action in named:
+        if action not in actions:
+            raise UsageError(f"{what} of '{action}', expected one of: {', '.join(actions)}")
     for scenario in dict.fromkeys(name for _, each in recipe.chosen for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)

@@ -21,6 +21,7 @@ ASIDE_RAD = 0.3  # how far aside of the line from the shoulder a hand may point
 CRAWL_MPS = 0.07  # an exact base would else arrive with the very speed that is too fast
 NEAR_M = 0.06  # from its goal at most: the arm reaches little farther than from the edge of a stand
 WALL_M = 0.1  # from the base to a wall at least
+PASSING_MPS = 0.35  # maximum speed at a subgoal: faster, the bend into it would be wider than the others
 CUP_MOVED_M, HANDLE_TURNED_RAD = 0.05, 0.3  # a cup that turns out to stand elsewhere by this is decided anew
 
 
@@ -37,9 +38,9 @@ def _pose(suffix: str, argument: int) -> tuple[Parameter, ...]:
     )
 
 
-def _at_rest(suffix: str, argument: int) -> Parameter:
-    """A drive begins and ends at rest; one that is decided anew on its way is bound to the believed speed."""
-    return Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, 0.0)
+def _speed(suffix: str, argument: int, upper_mps: float) -> Parameter:
+    """A drive passes subgoals in motion; stands are at rest. One that is decided anew begins at the believed speed."""
+    return Parameter(f"v{suffix}", argument, "v", "m/s", 0.0, upper_mps)
 
 
 def _spot(argument: int) -> tuple[Parameter, ...]:
@@ -72,7 +73,7 @@ def _handle(argument: int) -> Parameter:
 
 GO_TO_POSE = Action(
     "goToPose",
-    (*_pose("", 0), _at_rest("", 0), *_pose("g", 1), _at_rest("g", 1)),
+    (*_pose("", 0), _speed("", 0, V_MAX_MPS), *_pose("g", 1), _speed("g", 1, PASSING_MPS)),
     DriveToStand(
         GoToPose(
             V_MAX_MPS,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from tailor.executive.actions.go_to_pose import GoToPose
-from tailor.executive.actions.planar import PHIG, XG, YG, PlanarBelief
+from tailor.executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
 from tailor.executive.belief.angles import difference
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
@@ -33,9 +33,10 @@ class Near:
 
 @dataclass(frozen=True, slots=True)
 class DriveToStand:
-    """Drives to a pose and stops there. Goals within `near_m` at the start: see this module.
+    """Drives to a pose. Goals within `near_m` at the start: see this module.
 
-    The robot backs off where that needs less turning. It does so for short ways only: it sees ahead.
+    The robot backs off where that needs less turning. It does so for short ways only: it sees ahead. Near goals that it
+    faces about as it drives ahead are passed in motion, if they ask for that; at the others it stops and turns.
     """
 
     far: GoToPose
@@ -50,7 +51,7 @@ class DriveToStand:
 
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
-        x, y, phi = arguments[[XG, YG, PHIG]].tolist()
+        x, y, phi, vg = arguments[[XG, YG, PHIG, VG]].tolist()
         pose = belief.pose
         distance, bearing = math.hypot(x - pose.x, y - pose.y), math.atan2(y - pose.y, x - pose.x)
         if isinstance(state, Far) or (state is None and distance > self.near_m):
@@ -58,12 +59,15 @@ class DriveToStand:
             return Control(Far(control.state), control.command, control.outcome, control.detail)
         state = state or Near("face", _side(bearing, pose.phi, phi))
         off = difference(bearing if state.side > 0 else bearing + math.pi, pose.phi)
+        passes = vg > 0.0 and state == Near("drive", 1) and abs(difference(phi, pose.phi)) < self.far.heading_rad
         state = self._next(state, distance, off)
+        if passes and state.phase == "align" and belief.v < vg + self.far.speed_mps:
+            return Control(state, (vg, 0.0), "done")
         if state.phase == "align":
             return self._align(state, belief, difference(phi, pose.phi))
         if state.phase == "face":
             return Control(state, (0.0, self._turn(off)))
-        return Control(state, self._drive(state.side, distance, off))
+        return Control(state, self._drive(state.side, distance, off, vg if passes else 0.0))
 
     def _next(self, state: Near, distance: float, off: float) -> Near:
         """The phase now, where the goal is `off` radians left of the direction of driving."""
@@ -75,9 +79,9 @@ class DriveToStand:
             return Near("align", state.side)
         return state
 
-    def _drive(self, side: int, distance: float, off: float) -> tuple[float, float]:
+    def _drive(self, side: int, distance: float, off: float, passing_mps: float) -> tuple[float, float]:
         """Straight to the goal, slower while it turns towards it."""
-        braking_mps = math.sqrt(2.0 * self.far.braking_mps2 * distance * math.cos(off))
+        braking_mps = math.sqrt(passing_mps**2 + 2.0 * self.far.braking_mps2 * distance * math.cos(off))
         v = max(self.far.crawl_mps, min(self.far.v_max_mps, braking_mps))
         return side * v * math.cos(off), self._turn(off) * min(1.0, distance / self.steer_m)
 

@@ -31,7 +31,7 @@ def beside_box(name: str, robot: DrivingRobot) -> FeatureSpace:
 
 def _features(robot: DrivingRobot, rows: Rows, ops: Operations) -> Rows:
     poses, goal = _seen_from_box(rows, ops)
-    planned = drive(robot, poses, goal, ops)
+    planned = drive(robot, poses, rows[[3]], goal, ops)
     away = poses[[3, 4]] - poses[[0, 1]]
     return ops.stack(
         rows[[3]],

@@ -36,6 +36,7 @@ class DrivingRobot:
       near_m: To nearer goals it turns, drives straight and turns.
       there_m: To goals as near as this it only turns.
       drift: In turning to far goals.
+      braking_mps2: With which it brakes straight ahead before it turns, where it begins in motion.
     """
 
     base_m: float
@@ -47,3 +48,4 @@ class DrivingRobot:
     near_m: float
     there_m: float
     drift: Drift
+    braking_mps2: float

@@ -1,6 +1,7 @@
 """Poses on a planned drive: while the robot turns to its way, on the straight piece, in the bend into its goal.
 
-A robot that turns to a far goal drives on as soon as it faces its way roughly, so it leaves the place where it turns.
+A robot that begins in motion rolls on as it brakes to turn. One that turns to a far goal drives on as soon as it faces
+its way roughly, so it leaves the place where it turns.
 """
 
 from __future__ import annotations
@@ -57,17 +58,19 @@ class Drive:
     arriving: Poses
 
 
-def drive(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
+def drive(robot: DrivingRobot, poses: Rows, v: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
     """The drive between poses.
 
     Args:
       robot: Which robot drives.
       poses: Rows x, y, phi of the start, then of the goal, in any frame; shape (6, n).
+      v: Speed at the start, shape (1, n); negative: it rolls back.
       goal: Cosine and sine of the goal's heading.
       ops: Operations of features.
     """
     away = poses[[3, 4]] - poses[[0, 1]]
     near = length(away[[0]], away[[1]], ops) < robot.near_m
+    poses = _rolled(robot, poses, v, ops)
     first = planned(robot, poses, goal, near, ops)
     turning = _turning(robot.drift, poses, first.turn, near, ops)
     last = [POSES - 1]
@@ -79,6 +82,13 @@ def drive(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], ops: Operat
     back = ops.where(first.turn < 0.0, first.turn + TWO_PI, first.turn - TWO_PI)
     other = ops.where(ops.absolute(first.turn) < EITHER_RAD, first.turn, back)
     return Drive(first, way, turning, _turning(robot.drift, poses, other, near, ops), straight, arriving)
+
+
+def _rolled(robot: DrivingRobot, poses: Rows, v: Rows, ops: Operations) -> Rows:
+    """The poses with the start where the robot rolls on to before it turns."""
+    c, s = cosines(poses[[2]], ops)
+    rolled_m = v * ops.absolute(v) * (0.5 / robot.braking_mps2)
+    return ops.stack(poses[[0]] + c * rolled_m, poses[[1]] + s * rolled_m, poses[[2, 3, 4, 5]])
 
 
 def _turning(drift: Drift, poses: Rows, turn: Rows, near: Rows, ops: Operations) -> Poses:

@@ -6,6 +6,7 @@ Equal source, libraries, recipe and platform give equal models, bit for bit. Eve
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,6 +30,8 @@ def check(making: Making) -> None:
     """
     check_recipe(making.robot, making.recipe)
     request, domain = checked(training_request(making, making.zoo)), domains.load(making.domain)
+    for each in making.recipe.training.learners:
+        checked(dataclasses.replace(request, learner=each.learner))
     for action in run_data_sets.modelled_actions(making.domain):
         spaces_by_kind(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
 

@@ -34,19 +34,20 @@ def train_all(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...
         present = tuple(folder for folder in (*data, *near) if any(folder.glob(f"*/{MANIFEST}")))
         if not present:
             raise UsageError(f"{making.work}: no episodes to train on")
-        _train(training_request(making, zoo, present, kinds), making.jobs)
+        _train(making, training_request(making, zoo, present, kinds))
         (zoo / WHOLE).touch()
     yield Step(title, 1, 1)
 
 
-def _train(request: TrainingRequest, jobs: int) -> None:
+def _train(making: Making, request: TrainingRequest) -> None:
     """Train each model in a process of its own: equal bits for any number of jobs."""
+    own = {each.action: each.learner for each in making.recipe.training.learners}
     each = [
-        dataclasses.replace(request, actions=(action,), kinds=(kind,))
+        dataclasses.replace(request, actions=(action,), kinds=(kind,), learner=own.get(action, request.learner))
         for kind in request.kinds or KINDS
         for action in data_sets(request)
     ]
-    for _ in Processes().completed(train_models, [(one,) for one in each], jobs):
+    for _ in Processes().completed(train_models, [(one,) for one in each], making.jobs):
         pass
 
 

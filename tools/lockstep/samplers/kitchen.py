@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, X, Y
+from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, V, X, Y
 from tailor.executive.belief.angles import wrap
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.kitchen import places
@@ -31,7 +31,9 @@ from tailor.tools.lockstep.samplers.beside import Beside
 from tailor.tools.lockstep.samplers.free_drives import free_drive
 from tailor.tools.lockstep.samplers.kitchen_outcomes import KitchenOutcomes
 
-FROM_START = 0.3  # share of the drives that begin, or end, away from tables
+IN_MOTION = 0.5  # share of the drives in the open that begin, and of those that end, in motion
+IN_OPEN = 0.6  # share of the drives that lead through the open; elsewhere one in motion would often touch something
+FROM_START = 0.3  # share of the others that begin, or end, away from tables
 END_TICKS = 10  # a drive that ends right here is judged each tick, and a false alarm there leads to a new one
 BESIDE_STAND = {"x": 0.04, "y": 0.04, "phi": 0.1}  # by which a stand may lie outside of its ranges: drives arrive so
 BETWEEN_STANDS = 0.4  # share of the drives among objects
@@ -44,9 +46,9 @@ class KitchenSampler(KitchenOutcomes):
     """See task_sampler.TaskSampler."""
 
     def sample(self, action: Action, rng: np.random.Generator) -> Array:
-        """Controller arguments: a drive between two stands or the start, or a spot and a stand before it."""
+        """Controller arguments: a drive between stands, the start or in the open, or a spot and a stand before it."""
         if action.name == "goToPose":
-            return np.array([*_anywhere(rng), 0.0, *_anywhere(rng), 0.0])
+            return _through_open(action, rng) if rng.random() < IN_OPEN else _between_stands(rng)
         spot, handle = _spot(rng)
         arguments = [*_stand(spot, rng), spot.x, spot.y, rng.uniform(-ASIDE_RAD, ASIDE_RAD)]
         arguments += [float(rng.integers(2)), handle][: len(action.parameters) - len(arguments)]
@@ -70,10 +72,7 @@ class KitchenSampler(KitchenOutcomes):
 
     def sample_among_objects(self, action: Action, rng: np.random.Generator) -> Array:
         """As `sample`, or anywhere in the open: an asserted subgoal may lie anywhere."""
-        if rng.random() < BETWEEN_STANDS:
-            return self.sample(action, rng)
-        controller: DriveToStand = action.controller  # type: ignore[assignment]
-        return free_drive(controller.far.ways, controller.near_m, rng)
+        return _between_stands(rng) if rng.random() < BETWEEN_STANDS else _through_open(action, rng)
 
     def beside(self, action: Action, truths: Sequence[Message], count: int, rng: np.random.Generator) -> list[Beside]:
         """Furniture beside a drive; half of it beside its rest from some tick on, half of this beside its end."""
@@ -131,6 +130,19 @@ def _stand(spot: Spot, rng: np.random.Generator) -> tuple[float, float, float]:
     ranges = places.stand_ranges(spot)
     x, y, phi = (rng.uniform(ranges[q].lower - by, ranges[q].upper + by) for q, by in BESIDE_STAND.items())
     return x, y, wrap(phi)
+
+
+def _between_stands(rng: np.random.Generator) -> Array:
+    return np.array([*_anywhere(rng), 0.0, *_anywhere(rng), 0.0])
+
+
+def _through_open(action: Action, rng: np.random.Generator) -> Array:
+    """A drive whose planned way keeps clear of everything; at rest or in motion at either end."""
+    controller: DriveToStand = action.controller  # type: ignore[assignment]
+    arguments = free_drive(controller.far.ways, controller.near_m, rng)
+    for at in (V, VG):
+        arguments[at] = rng.uniform(0.0, action.parameters[at].upper) if rng.random() < IN_MOTION else 0.0
+    return arguments
 
 
 def _anywhere(rng: np.random.Generator) -> tuple[float, float, float]:

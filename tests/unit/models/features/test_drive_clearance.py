@@ -85,7 +85,7 @@ def test_a_drive_ends_at_its_goal_or_a_run_in_before_it() -> None:
     rows = poses(2000)
     columns = rows.T.astype(np.float32)
     goal = np.cos(columns[[5]]), np.sin(columns[[5]])
-    end = drive(B21, columns, goal, NUMPY)
+    end = drive(B21, columns, np.zeros_like(columns[[0]]), goal, NUMPY)
     x, y = end.arriving.x[-1] + goal[0][0] * end.way.run_in[0], end.arriving.y[-1] + goal[1][0] * end.way.run_in[0]
     assert np.abs(x - columns[3]).max() < 1e-5
     assert np.abs(y - columns[4]).max() < 1e-5

@@ -18,7 +18,16 @@ from tailor.tools.learning.making import making as making_module
 from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.making.steps import check, make
-from tailor.tools.learning.recipe import Calibration, RandomEpisodes, Recipe, Round, Training, read_recipe, recipe_path
+from tailor.tools.learning.recipe import (
+    Calibration,
+    OwnLearner,
+    RandomEpisodes,
+    Recipe,
+    Round,
+    Training,
+    read_recipe,
+    recipe_path,
+)
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
@@ -30,7 +39,7 @@ def trained(monkeypatch) -> list:
     """Requests of training, which writes a card and no model."""
     requests = []
 
-    def train(request, jobs) -> None:
+    def train(making, request) -> None:
         requests.append(request)
         folder = request.zoo / request.robot / "goToPose"
         folder.mkdir(parents=True)
@@ -80,10 +89,12 @@ def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypat
     requests: list[TrainingRequest] = []
     monkeypatch.setattr(training, "train_models", requests.append)
     whole = TrainingRequest("agilo", tmp_path, data=(tmp_path,), kinds=("duration", "success"))
-    training._train(whole, 1)
-    each = [(request.actions, request.kinds) for request in requests]
-    assert each == [((a,), (k,)) for k in ("duration", "success") for a in ("goToPose", "reach")]
-    assert {replace(request, actions=(), kinds=whole.kinds) for request in requests} == {whole}
+    own = Training(learners=(OwnLearner("reach", "bag"),))
+    training._train(Making("agilo", replace(TINY, training=own), tmp_path, 1, "make"), whole)
+    each = [(request.actions, request.kinds, request.learner) for request in requests]
+    assert each == [((a,), (k,), n) for k in whole.kinds for a, n in (("goToPose", whole.learner), ("reach", "bag"))]
+    usual = {replace(request, actions=(), kinds=whole.kinds, learner=whole.learner) for request in requests}
+    assert usual == {whole}
 
 
 def test_models_that_an_action_names_and_lacks_are_told_before_they_replace_others(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ def test_a_number_of_objects_without_runs_beside_them_is_refused(tmp_path):
     assert read_recipe(path).objects == 20
 
 
+OWN = "\n[[training.learners]]\naction = '{}'\nlearner = '{}'"
 ROUND = "episodes = 9\n[[rounds]]\nsource = '{}'\nscenarios = ['a', 'b']\nepisodes = {}"
 
 
@@ -55,6 +56,9 @@ def test_a_pool_is_for_active_rounds_only(tmp_path):
         ("agilo", "beside = 1000001", "{path}: 1000001 random episodes, expected at most 1000000"),
         ("agilo", "profile = 'x'", "{path}: no profile 'x' of soccer's body, expected one of: "),
         ("agilo", "[training]\nlearner = 'x'", "{path}: learner 'x' is unknown"),
+        ("agilo", OWN.format("dribbleBall", "x"), "{path}: learner 'x' is unknown"),
+        ("agilo", OWN.format("fly", "bag"), "{path}: a learner of 'fly', expected one of: "),
+        ("agilo", OWN.format("goToPose", "bag") * 2, "{path}: training.learners: 'goToPose' is there twice"),
         ("r2d2", "", "no robot 'r2d2'"),
     ],
 )
