@@ -7,6 +7,8 @@ from typing import Any
 
 from tailor.schemas.parsed_files import shown
 
+MAX_QUANTITY = 1e9  # metres, seconds, joules: features are of single precision, which the square of 1e20 exceeds
+
 
 def arguments_error(value: Any) -> str:
     """First error in the arguments that a card or a manifest declares; empty if there is none."""
@@ -14,8 +16,11 @@ def arguments_error(value: Any) -> str:
         return f"arguments is {shown(value)}, expected a list of name, unit, lower, upper"
     for each in value:
         named = isinstance(each, dict) and all(isinstance(each.get(key), str) for key in ("name", "unit"))
-        if not named or not is_range([each.get("lower"), each.get("upper")]):
+        ends = [each.get("lower"), each.get("upper")] if named else []
+        if not is_range(ends):
             return f"argument {shown(each)}, expected name, unit, and numbers lower <= upper"
+        if max(map(abs, ends)) > MAX_QUANTITY:
+            return f"argument {shown(each)}, expected numbers from {-MAX_QUANTITY:g} to {MAX_QUANTITY:g}"
     names = [each["name"] for each in value]
     repeated = sorted({name for name in names if names.count(name) > 1})
     return f"argument {repeated[0]} is there twice, expected once" if repeated else ""

@@ -209,7 +209,7 @@ def _episodes(table: pa.Table, names: Sequence[str], manifest: Mapping[str, Any]
     numbers = column["episode"]
     work = column.get(WORK, np.full(len(numbers), np.nan))  # older data sets lack the columns
     in_context = column.get(IN_CONTEXT, np.zeros(len(numbers), bool))
-    starts = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))
+    starts = np.flatnonzero(np.append(True, numbers[1:] != numbers[:-1]))
     return [
         Episode(
             int(numbers[a]),

@@ -26,6 +26,20 @@ def _is_context(value: Any) -> bool:
     return isinstance(value, dict) and _are_names(value.get("names", [])) and isinstance(value.get("failure", ""), str)
 
 
+def _context_error(manifest: Mapping[str, Any]) -> str:
+    """Error in how a manifest's context fits its arguments, which have a shape; empty if there is none.
+
+    Training takes the last columns for those of an object, and its failure for the only one that objects cause.
+    """
+    context = manifest.get("context") or {}
+    names, declared = context.get("names", []), [argument["name"] for argument in manifest["arguments"]]
+    if names and (not context.get("failure") or declared[-len(names) :] != names or declared == names):
+        return f"context is {shown(context)}, expected the names of the last arguments, and a failure"
+    if manifest.get("objects") and not names:
+        return f"objects is {manifest['objects']}, expected none without names in `context`"
+    return ""
+
+
 def _is_of_all(value: Any) -> bool:
     """Random data sets hold 0 for false. A count of some of the episodes would pass for all of them."""
     return isinstance(value, bool) or (is_count(value) and value == 0)
@@ -80,4 +94,4 @@ def _manifest_error(manifest: Any) -> str:
     for key, (has_shape, expected) in OPTIONAL.items():
         if manifest.get(key) is not None and not has_shape(manifest[key]):
             return f"{key} is {shown(manifest[key])}, expected {expected}"
-    return arguments_error(manifest.get("arguments"))
+    return arguments_error(manifest.get("arguments")) or _context_error(manifest)

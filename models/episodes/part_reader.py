@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from tailor.models.cards.json_shape import MAX_QUANTITY
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -40,6 +42,7 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
 
     try:
         table = pq.read_table(path, page_checksum_verification=True)
+        table.validate(full=True)  # text that is not UTF-8, say
     except (pa.ArrowException, OSError) as error:
         first = str(error).partition("\n")[0]  # others list the columns
         raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
@@ -61,11 +64,20 @@ def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:
     for name in numbers:
         if not pa.types.is_floating(table[name].type) or not np.isfinite(table[name].to_numpy()).all():
             raise UsageError(f"{path}: column {name} holds values that are not finite numbers")
+        _check_size(table[name].to_numpy(), name, path)
     if (table["duration_s"].to_numpy() < 0.0).any():
         raise UsageError(f"{path}: column duration_s holds negative numbers, expected seconds")
     for name in (name for name in PER_EPISODE if name in table.column_names):
         check, expected = PER_EPISODE[name]
         if not getattr(pa.types, check)(table[name].type) or table[name].null_count:
             raise UsageError(f"{path}: column {name} holds {table[name].type}, expected {expected} in every row")
-    if WORK in table.column_names and not pa.types.is_floating(table[WORK].type):
-        raise UsageError(f"{path}: column {WORK} holds {table[WORK].type}, expected numbers")
+    if WORK in table.column_names:
+        if not pa.types.is_floating(table[WORK].type):
+            raise UsageError(f"{path}: column {WORK} holds {table[WORK].type}, expected numbers")
+        _check_size(table[WORK].to_numpy(), WORK, path)
+
+
+def _check_size(values: NDArray[np.floating], name: str, path: Path) -> None:
+    """Raise UsageError if a number is too large for learners, most of which compute in single precision."""
+    if (np.abs(values[np.isfinite(values)]) > MAX_QUANTITY).any():
+        raise UsageError(f"{path}: column {name} holds numbers beyond {MAX_QUANTITY:g}, expected smaller ones")

@@ -79,6 +79,12 @@ def change_all(column: str, value: list[object]) -> Callable[[Path], None]:
     return apply
 
 
+def no_utf_8(path: Path) -> None:
+    table = pq.read_table(path)
+    damaged = pa.array([b"\xff"] * table.num_rows).view(pa.string())
+    pq.write_table(table.set_column(table.column_names.index("failure"), "failure", damaged), path)
+
+
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
@@ -97,6 +103,10 @@ def change_all(column: str, value: list[object]) -> Callable[[Path], None]:
         (change_all("failure", [1] * 6), "column failure holds int64, expected text in every row"),
         (twice, "cannot be read .Multiple matches for"),
         (change_all("work_j", ["x"] * 6), "column work_j holds string, expected numbers"),
+        (change("xg", 1e10), "column xg holds numbers beyond 1e.09, expected smaller ones"),
+        (change_all("duration_s", [1.0] * 5 + [1e39]), "column duration_s holds numbers beyond 1e.09"),
+        (change_all("work_j", [float("nan")] * 5 + [-1e300]), "column work_j holds numbers beyond 1e.09"),
+        (no_utf_8, "cannot be read .*Invalid UTF8 sequence"),
         (change_all("in_context", [1] * 6), "column in_context holds int64, expected true or false in every row"),
     ],
 )
@@ -106,6 +116,14 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         read_data_set(folder)
     assert str(folder / PART) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.filterwarnings("error")
+def test_numbers_of_episodes_may_be_unsigned(folder: Path) -> None:
+    table = pq.read_table(folder / PART)
+    unsigned = table["episode"].cast(pa.uint8())
+    pq.write_table(table.set_column(table.column_names.index("episode"), "episode", unsigned), folder / PART)
+    assert [episode.number for episode in read_data_set(folder).episodes] == list(range(6))
 
 
 def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_one_does_not(folder: Path) -> None:
@@ -138,7 +156,16 @@ def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_on
         ("arguments", [{"name": "x", "unit": "m", "lower": 1, "upper": 0}], "expected name, unit, and numbers lower"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": float("inf")}], "and numbers lower <= upper"),
         ("arguments", [{"name": "x", "unit": "m", "lower": 0, "upper": 10**400}], "and numbers lower <= upper"),
+        (
+            "arguments",
+            [{"name": "x", "unit": "m", "lower": -1e300, "upper": 0}],
+            "expected numbers from -1e+09 to 1e+09",
+        ),
         ("episodes", "x", "episodes is 'x', expected a whole number"),
+        ("objects", 2, "objects is 2, expected none without names in `context`"),
+        ("context", {"names": ["x"], "failure": "bump"}, "expected the names of the last arguments, and a failure"),
+        ("context", {"names": ["vg"], "failure": ""}, "expected the names of the last arguments, and a failure"),
+        ("context", {"names": NAMES, "failure": "bump"}, "expected the names of the last arguments, and a failure"),
         ("objects", 0, "objects is 0, expected a whole number, at least 1"),
         ("scenarios", [5], "scenarios is [5], expected a list of names"),
         ("situations", "x", "situations is 'x', expected a whole number"),
