@@ -3,6 +3,7 @@
 import json
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -204,6 +205,24 @@ def test_two_data_sets_of_one_seed_hold_the_same_episodes(folder: Path, tmp_path
     for twice in ([same, same], [same, other, longer]):
         with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 1\)"):
             merge(twice)
+
+
+def test_an_episode_of_two_data_sets_would_be_in_training_and_test(folder: Path, tmp_path: Path) -> None:
+    """Recordings that are in both, say, or scenarios that one of them ran among others."""
+    one, other = read_data_set(folder), read_data_set(make(tmp_path / "other", seed=2))
+    shared = DataSet(other.manifest, (*other.episodes[:4], *one.episodes[4:]), "both")
+    with pytest.raises(UsageError, match="two data sets hold 2 same episodes of goToPose, expected each once"):
+        merge([one, shared])
+
+
+def test_random_tasks_beside_an_object_are_those_without_it(folder: Path, tmp_path: Path) -> None:
+    alone, beside = read_data_set(folder), read_data_set(make(tmp_path / "beside", seed=2))
+    alone = replace(alone, manifest={**alone.manifest, "source": "lock-step, random arguments"})
+    source = "lock-step, random arguments beside one object"
+    same, others = (replace(beside, manifest={**beside.manifest, "source": source, "seed": seed}) for seed in (1, 2))
+    assert len(merge([alone, others]).episodes) == 12
+    with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 1\)"):
+        merge([alone, same])
 
 
 def test_rounds_in_which_an_action_never_ran_are_no_copies_of_one_another(folder: Path, tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ EPILOG = """\
 examples:
   tailor gather agilo goToPose dribbleBall --episodes 1000 --jobs 2 --seed 7 --out data/agilo
   tailor gather agilo goToPose --episodes 1000 --jobs 2 --seed 7 --out data/agilo --resume   (after Ctrl-C)
-  tailor gather agilo goToPose --beside-object --episodes 3000 --out data/agilo-beside
+  tailor gather agilo goToPose --beside-object --episodes 3000 --seed 8 --out data/agilo-beside
   tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --on-policy approach-dribble --episodes 300 --seed 9 --calibrates --out data/agilo-intervals

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.context_columns import CONTEXT
+from tailor.models.episodes.episodes import BESIDE_ONE
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.episodes.sources import short_hashes
 from tailor.schemas.errors import UsageError
@@ -46,7 +47,7 @@ def manifest_of(spec: DataSetSpec) -> dict[str, Any]:
         "episodes": spec.episodes,
         "seed": spec.seed,
         "stream": spec.stream,
-        "source": "lock-step, random arguments" + (" beside one object" if spec.beside else ""),
+        "source": "lock-step, random arguments" + (BESIDE_ONE if spec.beside else ""),
         **source_entries(spec.domain),
         "on_policy": 0,
         "software": {name: version(name) for name in ("tailor", "mujoco", "numpy")},

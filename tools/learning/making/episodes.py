@@ -19,7 +19,9 @@ def gather_random(making: Making) -> Iterator[Step]:
     recipe = making.recipe
     for action, count, folder, beside in _random_sets(making):
         objects = recipe.objects if beside else 0
-        drawn = (making.domain, action, count, recipe.seed, folder / action)
+        # of one seed, the tasks beside an object are those without; durations are learned and tested on both
+        seed = recipe.seed + (beside and not objects)
+        drawn = (making.domain, action, count, seed, folder / action)
         spec = DataSetSpec(*drawn, beside=beside, objects=objects, profile=recipe.profile)
         random_episodes.prepare(spec, resume=True)
         missing = random_episodes.missing_parts(spec)

@@ -60,8 +60,8 @@ def beside(tmp_path_factory: pytest.TempPathFactory):
     patch.setattr(action_run, "sampler_of", lambda domain: AmongOpponents())
     root = tmp_path_factory.mktemp("beside")
     specs = [
-        DataSetSpec("soccer", "goToPose", count, 7, root / name / "goToPose", beside=name == "beside")
-        for name, count in (("beside", COUNT), ("alone", COUNT_ALONE))
+        DataSetSpec("soccer", "goToPose", count, seed, root / name / "goToPose", beside=name == "beside")
+        for name, count, seed in (("beside", COUNT, 7), ("alone", COUNT_ALONE, 8))
     ]
     for spec in specs:
         random_episodes.prepare(spec, resume=False)
@@ -106,7 +106,7 @@ def test_a_full_disk_is_reported_with_the_model_and_leaves_no_file(beside, tmp_p
     folder = tmp_path / "agilo" / "goToPose"
     with pytest.raises(UsageError, match=re.escape(f"{folder / 'duration.onnx'} or its card: No space left on device")):
         list(train_action(list(beside), TrainingRequest("agilo", tmp_path, seed=1, learner="m5")))
-    assert list(folder.iterdir()) == []
+    assert list(tmp_path.rglob("*duration*")) == []
 
 
 def test_training_publishes_a_clearance_model_that_sees_the_object(beside, tmp_path: Path) -> None:
