@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tailor.models.episodes.manifest import MANIFEST
+from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -59,19 +59,33 @@ def data_sets(request: TrainingRequest) -> dict[str, list[Path]]:
     """Folders of each action's episodes, by action.
 
     Raises:
-      UsageError: There is no data set, or none of a requested action.
+      UsageError: There is no data set, none in one of the folders, or none of a requested action.
     """
     roots = request.data or (Path("data") / request.robot,)
     folders: dict[str, list[Path]] = {}
-    for path in (path for root in roots for path in sorted(root.glob(f"*/{MANIFEST}"))):
+    found = [(root, sorted(root.glob(f"*/{MANIFEST}"))) for root in roots]
+    for path in (path for _, paths in found for path in paths):
         folders.setdefault(path.parent.name, []).append(path.parent)
+    empty = ", ".join(str(root) for root, paths in found if not paths)
+    if empty:
+        raise UsageError(f"{empty}: no data sets, expected ACTION/{MANIFEST} (`tailor gather` makes them)")
     searched = ", ".join(map(str, roots))
     for action in request.actions:
         if action not in folders:
             raise UsageError(f"{searched}: no episodes of '{action}' (data sets there: {', '.join(folders) or 'none'})")
-    if not folders:
-        raise UsageError(f"{searched}: no data sets, expected ACTION/{MANIFEST} (`tailor gather` makes them)")
     return {action: folders[action] for action in request.actions or folders}
+
+
+def check_owner(folder: Path, robot: str) -> None:
+    """Raise UsageError if a data set is of another robot, or lies in the folder of another action, as copies may.
+
+    The last one that is trained would replace the models of the others.
+    """
+    manifest = read_manifest(folder)
+    if manifest["robot"] != robot:
+        raise UsageError(f"{folder}: episodes of robot '{manifest['robot']}', expected '{robot}'")
+    if manifest["action"] != folder.name:
+        raise UsageError(f"{folder}: episodes of action '{manifest['action']}', expected '{folder.name}' by its name")
 
 
 def spaces_by_kind(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from tailor.executive import domains
@@ -13,6 +15,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.learning.training_request import (
     TrainingRequest,
+    check_owner,
     context_space,
     data_sets,
     reproduction_command,
@@ -49,6 +52,8 @@ def train_models(
       UsageError: An unknown learner or feature space, missing or unsuitable data, or a zoo that cannot be written.
     """
     request, sets = checked(request), data_sets(request)
+    for folder in itertools.chain(*sets.values()):
+        check_owner(folder, request.robot)
     (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
     rows: list[dict[str, Any]] = []
     for number, (action, folders) in enumerate(sets.items()):
@@ -89,8 +94,6 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
     data = merge([without_context(each) for each in alone or sets])
-    if data.manifest["robot"] != request.robot:
-        raise UsageError(f"{folders[0]}: episodes of robot '{data.manifest['robot']}', expected '{request.robot}'")
     spaces = spaces_by_kind(request, data.names, folders[0])
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
@@ -154,6 +157,8 @@ def own_jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str
     if with_energy >= training.MIN_EPISODES:
         yield "energy", request.learner, partial(training.train_regression, ENERGY)
     failures = sum(episode.failure not in ("", UNOBSERVED) for episode in data.episodes)
+    if data.episodes and all(episode.failure == UNOBSERVED for episode in data.episodes):
+        return
     if failures >= MIN_FAILURE_SHARE * len(data.episodes) or (failures and _needs_success(request.robot, data)):
         yield "success", request.failure_learner, success_training.train_success
     elif _needs_success(request.robot, data):
@@ -179,12 +184,20 @@ def _publish(
     space: FeatureSpace,
     command: str,
 ) -> None:
+    """Publish a model in the zoo, unless it fails its own checks: the former one stays there."""
+    from tailor.models.cards.model_files import read_model
     from tailor.models.export.publishing import Publication, publish
+    from tailor.models.export.zoo_writer import replace_model
     from tailor.models.runtime import load_model
 
-    try:
-        path = publish(request.zoo, data, trained, Publication(kind, learner, space, request.seed, command))
-    except OSError as error:  # that of a full disk names no file
-        written = request.zoo / request.robot / data.manifest["action"] / f"{kind}.onnx"
-        raise UsageError(f"{written} or its card: {error.strerror}, expected files that can be written") from error
-    load_model(path)  # a model that fails its own checks must not ship
+    written = request.zoo / request.robot / data.manifest["action"] / f"{kind}.onnx"
+    with TemporaryDirectory() as apart:
+        try:
+            made = publish(Path(apart), data, trained, Publication(kind, learner, space, request.seed, command))
+            load_model(made)
+            replace_model(written, *read_model(made))
+        except UsageError as error:
+            named = str(error).replace(apart, str(request.zoo))
+            raise UsageError(f"{named}; such a model is not written, what was there stays") from None
+        except OSError as error:  # that of a full disk names no file
+            raise UsageError(f"{written} or its card: {error.strerror}, expected files that can be written") from error

@@ -1,5 +1,6 @@
 """Training beside objects: which models there are, and that training and test never share a run."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,12 +8,13 @@ import numpy as np
 import pytest
 
 from tailor.models.cards.card import read_card
-from tailor.models.episodes.episodes import DataSet, Episode, write_part
+from tailor.models.episodes.episodes import UNOBSERVED, DataSet, Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.models.training import success_training
 from tailor.schemas.errors import UsageError
+from tailor.tools.learning import training_run
 from tailor.tools.learning.training_request import TrainingRequest, reproduction_command, spaces_by_kind
-from tailor.tools.learning.training_run import context_jobs, own_jobs, train_action
+from tailor.tools.learning.training_run import context_jobs, own_jobs, train_action, train_models
 from tests.support import standin
 
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
@@ -120,3 +122,71 @@ def test_a_card_names_the_command_that_gathered_its_episodes(entries, flags) -> 
     manifest = {"action": "goToPose", "episodes": 5, "seed": 3, **entries}
     command = reproduction_command(request, spaces_by_kind(request, NAMES[:8], folder), {folder: manifest})
     assert command.startswith(f"tailor gather agilo {flags} --out data/agilo && tailor train agilo goToPose ")
+
+
+@pytest.mark.parametrize(
+    ("robot", "data", "message"),
+    [
+        ("agilo", ["own", "typo"], "typo: no data sets, expected ACTION/manifest.json (`tailor gather` makes them)"),
+        ("b21", ["own"], "own/goToPose: episodes of robot 'agilo', expected 'b21'"),
+        ("../../b21", ["own"], "own/goToPose: episodes of robot 'agilo', expected '../../b21'"),
+        (
+            "agilo",
+            ["own", "copied"],
+            "copied/goToPose-old: episodes of action 'goToPose', expected 'goToPose-old' by its name",
+        ),
+        ("agilo", ["own", "own"], "two data sets hold the same episodes of goToPose (seed 1), expected each once"),
+    ],
+)
+def test_data_of_something_else_is_refused_before_anything_is_written(tmp_path, monkeypatch, robot, data, message):
+    monkeypatch.chdir(tmp_path)
+    written(Path("own/goToPose"), 1)
+    written(Path("copied/goToPose-old"), 2)
+    request = TrainingRequest(robot, Path("zoo/of/mine"), data=tuple(map(Path, data)), learner="linear")
+    before = set(tmp_path.rglob("*"))
+    with pytest.raises(UsageError) as caught:
+        train_models(request)
+    assert str(caught.value) == message
+    assert {path for path in set(tmp_path.rglob("*")) - before if path.name != "agilo"} <= {
+        tmp_path / "zoo", tmp_path / "zoo/of", tmp_path / "zoo/of/mine"
+    }  # fmt: skip
+
+
+def test_a_copy_beside_the_data_set_of_a_named_action_does_no_harm(tmp_path: Path) -> None:
+    written(tmp_path / "goToPose", 1)
+    written(tmp_path / "goToPose-old", 2)
+    request = TrainingRequest("agilo", tmp_path / "zoo", ("goToPose",), (tmp_path,), learner="linear")
+    rows = train_models(replace(request, kinds=("duration",)))
+    assert [(row["action"], row["kind"]) for row in rows] == [("goToPose", "duration")]
+
+
+def test_nothing_is_learned_of_success_where_no_episode_was_observed() -> None:
+    """Recordings without ground truth: approaches name a model of success, and only durations can be learned."""
+    data = beside(50, 1, noted=False)
+    data = replace(data, manifest={**data.manifest, "action": "approachBall"})
+    unseen = tuple(replace(episode, failure=UNOBSERVED) for episode in data.episodes)
+    request = TrainingRequest("agilo", Path("zoo"))
+    assert [kind for kind, *_ in own_jobs(data, request)] == ["duration", "success"]
+    assert [kind for kind, *_ in own_jobs(replace(data, episodes=unseen), request)] == ["duration"]
+
+
+def test_a_model_that_fails_its_own_checks_does_not_replace_the_former_one(tmp_path: Path, monkeypatch) -> None:
+    folder, zoo = written(tmp_path / "goToPose", 1), tmp_path / "zoo"
+    request = TrainingRequest("agilo", zoo, learner="linear", kinds=("duration",))
+    list(train_action([folder], request))
+    former = {path: path.read_bytes() for path in zoo.rglob("duration*")}
+    publishing = training_run._publish
+
+    def published(request, data, *others) -> None:
+        files = {data.manifest["source_sha256"]: {"a.py": 5}}  # no hash, which no check of a manifest sees
+        publishing(request, replace(data, manifest={**data.manifest, "source_files": files}), *others)
+
+    monkeypatch.setattr(training_run, "_publish", published)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    write_manifest(folder, {**manifest, "source_sha256": "x"})
+    with pytest.raises(UsageError) as caught:
+        list(train_action([folder], replace(request, seed=5)))
+    card = zoo / "agilo" / "goToPose" / "duration.card.json"
+    assert str(caught.value).startswith(f"{card}: card's episodes' source_files are")
+    assert str(caught.value).endswith("such a model is not written, what was there stays")
+    assert {path: path.read_bytes() for path in zoo.rglob("*duration*")} == former
