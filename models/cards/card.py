@@ -85,7 +85,8 @@ def read_card(path: Path) -> dict[str, Any]:
 
 def write_card(path: Path, card: Card) -> None:
     """Write a card as JSON with one entry per line, for readable diffs."""
-    path.write_text(_dumped(card) + "\n", encoding="utf-8")
+    # what is no UTF-8, such as the name of a recording, is escaped as JSON does
+    path.write_text(_dumped(card) + "\n", encoding="utf-8", errors="backslashreplace")
 
 
 def _dumped(value: Any, indent: str = "") -> str:

@@ -68,6 +68,8 @@ def _summary_error(card: Mapping[str, Any]) -> str:
     for name in TEST_FIGURES[card["kind"]]:
         if not is_number(card["test"].get(name)):
             return f"test's {name} is {shown(card['test'].get(name))}, expected a number"
+    if not is_number(card["test"].get("interval90_factor", 1.0)):  # of models without intervals of their own
+        return f"test's interval90_factor is {shown(card['test']['interval90_factor'])}, expected a number"
     return _pictures_error(card["test"]) or episodes_error(card["episodes"])
 
 

@@ -8,6 +8,8 @@ from typing import Any
 from tailor.models.cards.json_shape import is_count, is_number
 from tailor.schemas.parsed_files import shown
 
+MAX_OBJECTS = 10_000  # noted after each run: memory holds all episodes of some runs
+
 
 def episodes_error(episodes: Mapping[str, Any]) -> str:
     """First error in the entry `episodes` of a card; empty if there is none."""
@@ -34,6 +36,8 @@ def _are_hashes(value: Any) -> bool:
 def _is_probe(value: Any) -> bool:
     counts = ("seed", "stream", "objects")
     if not isinstance(value, dict) or not all(is_count(value.get(key, 0)) for key in counts):
+        return False
+    if value.get("objects", 0) > MAX_OBJECTS or not isinstance(value.get("profile", ""), str):
         return False
     ends = value.get("ends")
     return {"seed", "stream"} <= set(value) and isinstance(ends, list) and all(map(_are_numbers, ends))

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.tree_boxes import TreeBoxes, tree_boxes
 from tailor.models.cards.card import UNITS, Card
-from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules import leaf_rules
 from tailor.models.rules.model_queries import distilled_duration, distilled_success, random_arguments, space_of
@@ -91,11 +90,11 @@ def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], 
 
 def _arguments(card: Card, data: Path | None) -> tuple[Array, str]:
     """Arguments to compare on, and their origin in words."""
-    from tailor.models.episodes.episodes import read_data_set
+    from tailor.tools.learning.known_episodes import known_episodes
 
-    folder = (data or Path("data") / card["robot"]) / card["action"]
-    if (folder / MANIFEST).exists():
-        episodes = read_data_set(folder).episodes
+    episodes = known_episodes(card, data)
+    if episodes:
+        folder = (data or Path("data") / card["robot"]) / card["action"]
         return np.stack([episode.ticks[0] for episode in episodes]), f"over the {len(episodes)} episodes in {folder}"
     drawn = random_arguments(card, RANDOM_ARGUMENTS, np.random.default_rng(1))
     return drawn, f"over {RANDOM_ARGUMENTS} random arguments"

@@ -27,6 +27,9 @@ def duration(zoo: Path) -> Path:
     return zoo / "agilo" / "goToPose" / "duration.onnx"
 
 
+PROBE = {"seed": 7, "stream": 10, "ends": [[1.0]]}
+
+
 def changed_card(path: Path, **changes: object) -> None:
     write_card(card_path(path), {**read_card(card_path(path)), **changes})
 
@@ -188,6 +191,21 @@ NUMBERS = [0.5] * 32
         ("episodes", {"count": 9, "sources": [5]}, "episodes' sources are [5], expected objects"),
         ("episodes", {"count": 9, "source_files": {"a": 5}}, "source_files are {'a': 5}, expected hashes by file"),
         ("episodes", {"count": 9, "probe": {"seed": -1}}, "probe is {'seed': -1}, expected seed, stream and"),
+        (
+            "episodes",
+            {"count": 9, "probe": PROBE | {"objects": 10**9}},
+            "expected seed, stream and the numbers of some",
+        ),
+        (
+            "episodes",
+            {"count": 9, "probe": PROBE | {"profile": ["x"]}},
+            "expected seed, stream and the numbers of some",
+        ),
+        (
+            "test",
+            {"mae_s": 1, "mean_duration_s": 1, "interval90_factor": "x"},
+            "interval90_factor is 'x', expected a nu",
+        ),
         ("feature_units", None, "feature_units is None, expected an object"),
         ("feature_units", {"d": "m"}, "feature_units has 1 entries, expected 7 by its features 'projective-periodic'"),
     ],
@@ -238,3 +256,10 @@ def test_an_unknown_robot_is_told_with_those_that_there_are() -> None:
 def test_golden_examples_hold_the_degenerate_case() -> None:
     golden = np.array(read_card(SHIPPED / "goToPose" / "duration.card.json")["golden"]["arguments"])
     assert projective(golden)[-1, 2] == 0
+
+
+def test_a_card_keeps_the_name_of_a_recording_that_is_no_utf_8(zoo: Path) -> None:
+    """Training ended in a traceback, after the model was written."""
+    sources = [{"source": "recordings", "recordings": ["monday-\udcff.mcap"]}]
+    changed_card(duration(zoo), episodes={"count": 9, "sources": sources})
+    assert read_card(card_path(duration(zoo)))["episodes"]["sources"] == sources

@@ -58,6 +58,51 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert {"model", "learner", "episodes", "test"} <= json.loads(capsys.readouterr().out)[0].keys()
     assert main(["models", "show", "agilo/goToPose", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["kind"] == "duration"
+    assert main(["models", "show", "agilo", "--json"]) == 0
+    kinds = {card["kind"] for card in json.loads(capsys.readouterr().out)}
+    assert {"duration", "clearance"} <= kinds
+
+
+def copied(tmp_path: Path, action: str = "goToPose", place: str = "agilo/goToPose") -> Path:
+    """A zoo with the shipped models of one action of AGILO, perhaps in another one's place; their folder."""
+    return Path(shutil.copytree(runtime.ZOO / "agilo" / action, tmp_path / place))
+
+
+def changed(card: Path, **entries: object) -> None:
+    card.write_text(json.dumps({**json.loads(card.read_text()), **entries}))
+
+
+@pytest.mark.parametrize("verb", ["check", "list", "show", "rules", "plot"])
+def test_a_model_in_the_place_of_another_one_is_no_sound_model(tmp_path: Path, verb: str, capsys) -> None:
+    copied(tmp_path, "dribbleBall", "agilo/approachBall")
+    assert main(["models", verb, "agilo/approachBall", "--zoo", str(tmp_path)]) == (1 if verb == "check" else 2)
+    output = "".join(capsys.readouterr())
+    assert "holds a model of agilo/dribbleBall/duration, expected agilo/approachBall/duration by its place" in output
+
+
+def test_a_check_finds_durations_beside_objects_that_are_of_other_episodes(tmp_path: Path, capsys) -> None:
+    """The executive refuses to start with them."""
+    folder = copied(tmp_path)
+    assert main(["models", "check", "agilo/goToPose/duration_beside", "--zoo", str(tmp_path)]) in (0, 1)
+    assert "learned from other episodes" not in capsys.readouterr().out
+    card = folder / "duration_beside.card.json"
+    changed(card, episodes={**json.loads(card.read_text())["episodes"], "sha256": "0" * 64})
+    assert main(["models", "check", "agilo/goToPose/duration_beside", "--zoo", str(tmp_path)]) == 1
+    assert "learned from other episodes than agilo/goToPose/duration, expected the same" in capsys.readouterr().out
+
+
+def test_what_a_card_holds_reaches_no_terminal_unescaped(tmp_path: Path, capsys) -> None:
+    changed(copied(tmp_path) / "duration.card.json", command="\ud800 \x1b[31m", **{"\x1b[32m": 5})
+    assert main(["models", "show", "agilo/goToPose", "--zoo", str(tmp_path)]) == 0
+    output = capsys.readouterr().out
+    assert "command: \\ud800 \\x1b[31m" in output
+    assert "\x1b" not in output
+
+
+def test_hidden_files_beside_models_are_none(tmp_path: Path, capsys) -> None:
+    (copied(tmp_path) / "._duration.onnx").touch()
+    assert main(["models", "list", "--zoo", str(tmp_path), "--json"]) == 0
+    assert all(row["model"].startswith("agilo/goToPose/") for row in json.loads(capsys.readouterr().out))
 
 
 def test_the_figures_of_a_card_come_first_and_its_provenance_last(capsys) -> None:

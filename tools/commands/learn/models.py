@@ -13,12 +13,13 @@ from rich.table import Column, Table
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 from tailor.models.cards.card_shape import TEST_FIGURES
-from tailor.models.cards.checks import check_ranges
+from tailor.models.cards.checks import check_place, check_ranges
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
-from tailor.models.runtime import ZOO, load_model
+from tailor.models.runtime import BESIDE, ZOO, load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, robot_names
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
 from tailor.tools.learning.card_lines import card_lines
@@ -68,7 +69,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--distilled", action="store_true", help="rules: a tree distilled from the model (default if it has several)"
     )
     parser.add_argument("--out", type=Path, help=f"plot: folder (default: {OUT})")
-    parser.add_argument("--json", action="store_true", help="list, show, check, push, pull: print JSON")
+    json_help = "list, show, check, push, pull: print JSON; show: a card, of several models a list of them"
+    parser.add_argument("--json", action="store_true", help=json_help)
     sharing.configure(parser)
 
 
@@ -81,23 +83,29 @@ def run(arguments: argparse.Namespace) -> int:
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
         return _check(names, arguments, named)
-    loaded = [load_model(name, arguments.zoo) for name in names]
+    loaded = [_loaded(name, arguments.zoo) for name in names]
     _check_data(arguments.data, {model.card["action"] for model in loaded})
     if arguments.verb == "list":
         _list([model.card for model in loaded], arguments.json)
     elif arguments.verb == "show":
-        for model in loaded:
-            _show(model.card, arguments.json)
+        _show([model.card for model in loaded], arguments.json)
     elif arguments.verb == "rules":
         for name, model in zip(names, loaded, strict=True):
             print(_rules(model, name, arguments))
     else:
         from tailor.tools.figures.learned_models import pictures
 
-        for model in loaded:
-            for path in pictures.draw(model, arguments.data, arguments.out or OUT):
-                print(path)
+        for name, model in zip(names, loaded, strict=True):
+            drawn = pictures.draw(model, arguments.data, arguments.out or OUT)
+            print(*drawn or [f"{name}: no picture without its episodes"], sep="\n")
     return 0
+
+
+def _loaded(name: str, zoo: Path) -> OnnxModel:
+    """A model of the zoo; raises UsageError if it fails a check, as where it is another one than its place says."""
+    model = load_model(name, zoo)
+    check_place(model.card, name, zoo / name)
+    return model
 
 
 def _check_flags(arguments: argparse.Namespace) -> None:
@@ -146,7 +154,8 @@ def _full(name: str, zoo: Path) -> list[str]:
 
 def _all(zoo: Path) -> list[str]:
     files = (path for end in ("card.json", "onnx") for path in zoo.glob(f"*/*/*.{end}"))
-    names = sorted({"/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in files})
+    named = (path for path in files if not path.name.startswith("."))  # others are copies of macOS, say
+    names = sorted({"/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in named})
     if not names:
         raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` writes them)")
     return names
@@ -181,14 +190,16 @@ def _list(cards: list[Card], as_json: bool) -> None:
     table_console().print(table)
 
 
-def _show(card: Card, as_json: bool) -> None:
+def _show(cards: list[Card], as_json: bool) -> None:
+    """Print cards, with --json as one value: that of a single model, or a list."""
     if as_json:
-        print(json.dumps(card))
+        print(json.dumps(cards[0] if len(cards) == 1 else cards))
         return
     console = Console(highlight=False)
-    console.rule(f"{card['robot']}/{card['action']}/{card['kind']}")
-    for key, text in card_lines(card):
-        console.print(f"[bold]{key}[/bold]: {escape(text)}")
+    for card in cards:
+        console.rule(f"{card['robot']}/{card['action']}/{card['kind']}")
+        for key, text in card_lines(card):
+            console.print(f"[bold]{escape(plain(key))}[/bold]: {escape(plain(text))}")
 
 
 def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) -> int:
@@ -199,18 +210,29 @@ def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) 
     failed, stale = {}, {}
     for name in names:
         try:
-            model, (robot, action, _) = load_model(name, arguments.zoo), name.split("/")
+            model, (robot, action, _) = _loaded(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
+            _check_beside(name, model.card, arguments.zoo)
             differs = staleness(model.card)
             if differs:
                 stale[name] = differs
         except UsageError as error:
             failed[name] = str(error)
         if not arguments.json:
-            print(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}")
+            print(plain(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}"))
     if arguments.json:
         print(json.dumps({"checked": names, "failed": failed, "stale": stale}))
     else:
         for robot in dict.fromkeys(name.split("/")[0] for name in stale):
             print(f"stale models of {robot} are made anew by {remaking_advice(robot, named)}")
     return 1 if failed or stale else 0
+
+
+def _check_beside(name: str, card: Card, zoo: Path) -> None:
+    """Raise UsageError if durations beside objects are of other episodes than those without; nothing loads such."""
+    if not name.endswith(BESIDE):
+        return
+    own = _loaded(name.removesuffix(BESIDE), zoo).card
+    if own["episodes"].get("sha256") != card["episodes"].get("sha256"):
+        other = name.removesuffix(BESIDE)
+        raise UsageError(f"{zoo / name}.onnx: learned from other episodes than {other}, expected the same")

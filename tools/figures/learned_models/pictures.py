@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tailor.models.cards.card import UNITS, Card
-from tailor.models.episodes.episodes import UNOBSERVED, Episode, read_data_set
+from tailor.models.episodes.episodes import UNOBSERVED, Episode
 from tailor.models.episodes.examples import Examples, success_examples
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
 from tailor.tools.figures.learned_models import regions, shapes
+from tailor.tools.learning.known_episodes import known_episodes
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
@@ -36,8 +37,7 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
       out: Folder for the PNG files.
     """
     card = model.card
-    folder = (data or Path("data") / card["robot"]) / card["action"]
-    episodes = read_data_set(folder).episodes if (folder / "manifest.json").exists() else ()
+    episodes = known_episodes(card, data)
     pictures: dict[str, Callable[[Any], None]] = {}
     if isinstance(model, OnnxDuration):
         region = regions.region_of(card)
@@ -53,9 +53,11 @@ def draw(model: Model, data: Path | None, out: Path) -> list[Path]:
             if region is not None:
                 pictures |= {"error-by-region": lambda f: regions.error_by_region(f, model, rows, region)}
     else:
-        pictures |= {"figure8": lambda figure: shapes.figure8(figure, model)}
-        if episodes:
-            pictures |= {"reliability": lambda figure: _reliability(figure, model, episodes)}
+        if regions.region_of(card) is regions.POSES:
+            pictures |= {"figure8": lambda figure: shapes.figure8(figure, model)}
+        judged = [episode for episode in episodes if episode.failure != UNOBSERVED]
+        if judged:
+            pictures |= {"reliability": lambda figure: _reliability(figure, model, judged)}
     out.mkdir(parents=True, exist_ok=True)
     name = "-".join(card[key] for key in ("robot", "action", "kind"))
     return [_save(out / f"{name}-{each}.png", name.replace("-", "/"), fill) for each, fill in pictures.items()]
@@ -117,8 +119,8 @@ def flat_from(curve: Sequence[Sequence[float]], high: float) -> int:
     return int(flat)
 
 
-def _reliability(figure: Any, model: OnnxSuccess, episodes: tuple[Episode, ...]) -> None:
-    rows = success_examples([e for e in episodes if e.failure != UNOBSERVED], 1)
+def _reliability(figure: Any, model: OnnxSuccess, episodes: Sequence[Episode]) -> None:
+    rows = success_examples(episodes, 1)
     predicted, observed, count = zip(*(model.card["test"].get("reliability") or [(0.0, 0.0, 1)]), strict=True)
     probability = model.probability(rows.arguments)
     axes, right = figure.subplots(1, 2)
