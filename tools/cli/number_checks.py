@@ -31,11 +31,16 @@ def check_within(value: float, maximum: float, flag: str) -> None:
         raise UsageError(f"{flag} is {value:g}, expected 0 to {maximum:g}")
 
 
+MAX_PROCESSES = 1000  # each takes some 100 MB
+
+
 def processes(text: str) -> int:
     """`type` for --jobs: from 1 up, or -1 for one process per core, as in joblib; raises UsageError."""
     value = _integer(text, "--jobs", "a number of processes")
     if value < 1 and value != -1:
         raise UsageError(f"--jobs is {value}, expected at least 1, or -1 for every core")
+    if value > MAX_PROCESSES:
+        raise UsageError(f"--jobs is {value}, expected at most {MAX_PROCESSES}")
     return value
 
 

@@ -30,8 +30,9 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     domain = random_episodes.domain_of(robot)
     check_profile(domain, recipe.profile)
     actions = run_data_sets.modelled_actions(domain)
-    for count in (recipe.episodes, recipe.beside, *(each.episodes for each in recipe.random)):
+    for count in (recipe.episodes, *(each.episodes for each in recipe.random)):
         random_episodes.check_number(count)
+    random_episodes.check_number(recipe.beside, recipe.objects)
     named = [("random episodes", each.action) for each in recipe.random]
     named += [("a learner", each.action) for each in recipe.training.learners]
     for what, action in named:

@@ -159,9 +159,7 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
             left = sum(
                 min(random_episodes.PART, spec.episodes - first) for first in random_episodes.missing_parts(spec)
             )
-            Console(stderr=True).print(
-                f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues"
-            )
+            _note(f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues")
             return 130
     if arguments.json:
         print(json.dumps(figures))
@@ -177,7 +175,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.recordings:
         extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         for line in extracted.left_out:
-            Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
+            _note(line)
         found = ", ".join(f"{action} {count}" for action, count in extracted.counts.items())
         print(json.dumps(extracted.counts) if arguments.json else f"{out}: episodes: {found}")
         return 0
@@ -192,7 +190,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
     policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where, arguments.calibrates)
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
-    return _shown(counted("runs", running, len(policy.jobs)), out, arguments.json)
+    steps = counted("runs", running, len(policy.jobs), policy_runs.finished_runs(policy))
+    return _shown(steps, out, arguments.json)
 
 
 def _shown(steps: Iterable[Step], out: Path, as_json: bool) -> int:
@@ -202,13 +201,18 @@ def _shown(steps: Iterable[Step], out: Path, as_json: bool) -> int:
         show(steps, quiet=as_json, reached=reached)
     except KeyboardInterrupt:
         kept = ", ".join(f"{newest.done} of {newest.total} {title}" for title, (_, newest) in reached.items())
-        Console(stderr=True).print(f"{out}: kept {kept}; --resume continues")
+        _note(f"{out}: kept {kept}; --resume continues")
         return 130
     if as_json:
         totals = {title: newest.total for title, (_, newest) in reached.items()}
         now = sum(newest.done - first.done for first, newest in reached.values())
         print(json.dumps({"folder": str(out), **totals, "run_now": now}))
     return 0
+
+
+def _note(line: str) -> None:
+    """Print to standard error, in one line: brackets in a path are no markup."""
+    Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
 
 
 def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[str]:

@@ -96,8 +96,8 @@ def run(arguments: argparse.Namespace) -> int:
         from tailor.tools.figures.learned_models import pictures
 
         for name, model in zip(names, loaded, strict=True):
-            drawn = pictures.draw(model, arguments.data, arguments.out or OUT)
-            print(*drawn or [f"{name}: no picture without its episodes"], sep="\n")
+            drawn = map(str, pictures.draw(model, arguments.data, arguments.out or OUT))
+            print("\n".join(drawn) or f"{name}: no picture without its episodes")
     return 0
 
 

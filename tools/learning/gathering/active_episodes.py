@@ -64,7 +64,10 @@ class Active:
 
 
 def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]:
-    """Draw and refine the missing situations, then run the missing episodes, in parallel; yields progress.
+    """Check and prepare the folders; then draw and refine the missing situations, and run the missing episodes.
+
+    Returns:
+      Progress, while it is iterated over.
 
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
@@ -76,6 +79,11 @@ def run_active(active: Active, jobs: int, resume: bool = True) -> Iterator[Step]
         "episodes": active.episodes,
     }
     prepare_chosen(active, about, active.situations, resume)
+    return _refine_and_run(active, jobs)
+
+
+def _refine_and_run(active: Active, jobs: int) -> Iterator[Step]:
+    """The steps of `run_active`, in parallel."""
     total = len(active.situations)
     missing = [first for first in range(0, total, CHUNK) if not _pool_path(active, first).exists()]
     left = sum(min(CHUNK, total - first) for first in missing)

@@ -11,9 +11,12 @@ from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.models.episodes.manifest import MANIFEST
+from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare
 from tailor.tools.parallel.software import models_sha256
 
+MARKS = ("runs-*.done", "pool-*.json")  # of finished work, beside the data sets of the actions
 UNPROVEN = RefinementSettings(certify_checks=0)  # certificates take time and do not change choices
 
 
@@ -63,7 +66,16 @@ class Chosen(Protocol):
 
 
 def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], resume: bool) -> None:
-    """Create the folders of data sets that models choose; see `prepare`."""
+    """Create the folders of data sets that models choose; see `prepare`.
+
+    Raises:
+      UsageError: See `prepare`; or some runs are marked as finished, but the data set of an action is gone.
+    """
+    actions = modelled_actions(chosen.domain)
+    marked = min((path for marks in MARKS for path in chosen.folder.glob(marks)), default=None)
+    gone = next((name for name in actions if not (chosen.folder / name / MANIFEST).exists()), None)
+    if marked is not None and gone is not None:
+        raise UsageError(f"{marked}: {gone}/{MANIFEST} is not there any more, expected both, or another --out")
     entries = {
         **about,
         "seed": chosen.seed,
@@ -71,4 +83,4 @@ def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], r
         **({"profile": chosen.profile} if chosen.profile else {}),
         "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
     }
-    prepare(chosen.domain, chosen.folder, modelled_actions(chosen.domain), entries, runs, resume)
+    prepare(chosen.domain, chosen.folder, actions, entries, runs, resume)

@@ -96,9 +96,12 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
 
     Raises:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or one of
-        selected episodes, which does not grow.
+        selected episodes, which does not grow; or parts without a manifest, which would pass for those of this one.
     """
     if not (folder / MANIFEST).exists():
+        part = min(folder.glob("part-*.parquet"), default=None)
+        if part is not None:
+            raise UsageError(f"{part}: there is no {MANIFEST} beside it, expected one, or another --out")
         return
     if not resume:
         raise UsageError(

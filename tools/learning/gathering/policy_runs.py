@@ -49,7 +49,7 @@ class Policy:
 
 
 def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
-    """Run the missing runs in parallel; yields numbers of finished runs.
+    """Check and prepare the folders, then run the missing runs in parallel; yields numbers of finished runs.
 
     Raises:
       UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
@@ -57,7 +57,20 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     about = {"source": "lock-step, refined choices", "episodes": policy.runs}
     about |= {CALIBRATES: True} if policy.calibrates else {}
     prepare_chosen(policy, about, policy.jobs, resume)
-    missing = [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
+    return _run_missing(policy, jobs)
+
+
+def finished_runs(policy: Policy) -> int:
+    """Number of runs that are in the folder."""
+    return len(policy.jobs) - sum(len(policy.jobs[first : first + CHUNK]) for first in _missing(policy))
+
+
+def _missing(policy: Policy) -> list[int]:
+    return [first for first in range(0, len(policy.jobs), CHUNK) if not _marker(policy, first).exists()]
+
+
+def _run_missing(policy: Policy, jobs: int) -> Iterator[int]:
+    missing = _missing(policy)
     for number, cut in completed(_chunk, [(policy, first) for first in missing], jobs):
         first = missing[number]
         write(policy.domain, policy.folder, f"{first:06d}", cut)

@@ -13,6 +13,7 @@ from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
+from tailor.models.cards.episodes_shape import MAX_OBJECTS
 from tailor.models.episodes.episodes import Episode, part_bytes, store_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import UsageError
@@ -25,6 +26,7 @@ from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
 
 MAX_EPISODES = 1_000_000  # of a data set: the names of parts have six digits, and those of more would be in no order
+MAX_NUMBER = 2**31  # of episodes in all, as their numbers have 32 bits
 PART = 20  # episodes in a part: the most that a kill -9 loses, per process
 
 
@@ -51,14 +53,18 @@ def check_action(domain: str, action: str, beside: bool = False) -> None:
         raise UsageError(f"action '{action}' of {domain} has no context of objects (actions with one: {known})")
 
 
-def check_number(count: int) -> None:
-    """Check a number of random episodes.
+def check_number(count: int, objects: int = 0) -> None:
+    """Check a number of random episodes, or of runs beside `objects` that are noted after each.
 
     Raises:
       UsageError: It is beyond what can be stored.
     """
     if count > MAX_EPISODES:
         raise UsageError(f"{count} random episodes, expected at most {MAX_EPISODES}")
+    if objects > MAX_OBJECTS:
+        raise UsageError(f"{objects} objects beside each run, expected at most {MAX_OBJECTS}")
+    if count * objects > MAX_NUMBER:
+        raise UsageError(f"{count} runs beside {objects} objects each, expected at most {MAX_NUMBER} episodes in all")
 
 
 def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episode:
@@ -107,7 +113,7 @@ def prepare(spec: DataSetSpec, resume: bool) -> None:
       UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or the robot's
         sampler draws no objects where some are asked for; or there are too many episodes.
     """
-    check_number(spec.episodes)
+    check_number(spec.episodes, spec.objects)
     if spec.beside:
         check_sampler(domains.load(spec.domain), spec.objects)
     manifest = manifest_of(spec)

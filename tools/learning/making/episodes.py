@@ -54,8 +54,8 @@ def gather_calibration(making: Making, zoo: Path) -> Iterator[Step]:
 
 
 def _run(policy: policy_runs.Policy, title: str, jobs: int) -> Iterator[Step]:
-    running = policy_runs.run_policy(policy, jobs)
-    yield from counted(f"{title}: runs of {', '.join(policy.scenarios)}", running, len(policy.jobs))
+    running, done = policy_runs.run_policy(policy, jobs), policy_runs.finished_runs(policy)
+    yield from counted(f"{title}: runs of {', '.join(policy.scenarios)}", running, len(policy.jobs), done)
 
 
 def _random_sets(making: Making) -> list[tuple[str, int, Path, bool]]:

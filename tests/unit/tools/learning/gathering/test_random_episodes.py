@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import joblib
@@ -10,7 +11,7 @@ import pytest
 
 from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.schemas.errors import UsageError
-from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.gathering import policy_runs, random_episodes
 from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, DataSetSpec
 from tailor.tools.learning.gathering.random_episodes import PART
 from tailor.tools.main import main
@@ -96,6 +97,47 @@ def test_going_on_with_fewer_episodes_throws_none_away(gathered: Path, tmp_path:
     assert parts(folder) == parts(gathered)
 
 
+def test_parts_whose_manifest_is_gone_pass_for_no_others(gathered: Path, tmp_path: Path, capsys) -> None:
+    """Those of another seed, say: some would have been kept as finished ones, the others deleted."""
+    folder = shutil.copytree(gathered, tmp_path / "goToPose")
+    (folder / "manifest.json").unlink()
+    for more in ([], ["--resume"]):
+        assert gather(tmp_path, *more, seed=8) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.endswith(
+            "part-000000-000020.parquet: there is no manifest.json beside it, expected one, or another --out"
+        )
+        assert parts(folder) == parts(gathered)
+
+
+def test_runs_whose_data_set_is_gone_do_not_pass_for_finished(tmp_path: Path, capsys) -> None:
+    runs = ["gather", "agilo", "--on-policy", "approach", "--out", str(tmp_path), "--jobs", "1", "--episodes", "1"]
+    assert main(runs) == 0
+    shutil.rmtree(tmp_path / "approachBall")
+    for more in ([], ["--resume"]):
+        capsys.readouterr()
+        assert main([*runs, *more]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "runs-000000-000001.done: approachBall/manifest.json is not there any more, expected both" in line
+
+
+def test_an_interrupted_resumption_counts_what_was_there_before(tmp_path: Path, monkeypatch, capsys) -> None:
+    def runs(*more: str) -> int:
+        words = ["gather", "agilo", "--on-policy", "approach", "--out", str(tmp_path / "[/x]"), "--jobs", "1", *more]
+        return main(words)
+
+    assert runs("--episodes", "10") == 0
+    capsys.readouterr()
+
+    def interrupted(*_: object) -> Iterator[int]:
+        raise KeyboardInterrupt
+        yield 0
+
+    monkeypatch.setattr(policy_runs, "_run_missing", interrupted)
+    assert runs("--episodes", "12", "--resume", "--json") == 130
+    assert capsys.readouterr().err == f"{tmp_path}/[/x]: kept 10 of 12 runs; --resume continues\n"
+
+
 def test_whole_runs_do_not_overwrite_random_episodes(gathered: Path, capsys) -> None:
     before = (gathered / "manifest.json").read_text()
     into = ["--out", str(gathered.parent), "--episodes", "1", "--jobs", "1", "--json"]
@@ -131,6 +173,16 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--episodes", "9223372036854775807"], "9223372036854775807 random episodes, expected at most"),
         (["agilo", "--episodes", "many"], "--episodes is 'many', expected a whole number"),
         (["agilo", "--jobs", "0"], "--jobs is 0, expected at least 1, or -1 for every core"),
+        (["agilo", "--jobs", "100000000"], "--jobs is 100000000, expected at most 1000"),
+        (["agilo", "--beside-objects", "3000000000"], "3000000000 objects beside each run, expected at most 10000"),
+        (
+            ["agilo", "--beside-objects", "9999", "--episodes", "999999"],
+            "999999 runs beside 9999 objects each, expected at most 2147483648 episodes in all",
+        ),
+        (
+            ["agilo", "--active", "approach", "--pool", "101"],
+            "101000 situations (runs, or episodes × pool), expected at",
+        ),
         (["agilo", "--seed", "-1"], "--seed is -1, expected at least 0"),
         (["agilo", "--on-policy", "approach", "--zoo", "nowhere"], "no action models for robot 'agilo' in nowhere"),
         (["agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),
@@ -148,7 +200,8 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
 )
 def test_bad_input_is_told_before_anything_starts(wrong: list[str], message: str, tmp_path: Path, capsys) -> None:
     assert main(["gather", *wrong, "--out", str(tmp_path / "x")]) == 2
-    assert message in capsys.readouterr().err.splitlines()[-1]
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
     assert not (tmp_path / "x").exists()
 
 
