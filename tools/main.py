@@ -17,6 +17,7 @@ from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
 
 TRY_AGAIN = 75
+INTERRUPTED = 130
 
 # command -> (module, one line of help); each module has configure(parser) and run(arguments) -> exit code
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -104,7 +105,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         _report(f"{plain(name)}: {plain(advice([extra]) if extra else str(error))}")
         return TRY_AGAIN if is_supervised and isinstance(error, UnreachableError) else 2
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
+    except ImportError as error:
+        if not isinstance(error.__cause__, KeyboardInterrupt):  # which libraries in C turn into their own error
+            raise
+        return INTERRUPTED
     except BrokenPipeError:
         sys.stdout = None  # the interpreter would flush it again at exit, and fail
         return 1

@@ -159,6 +159,20 @@ def test_an_interrupt_while_modules_load_prints_no_traceback():
     assert (done.returncode, done.stderr) == (130, "")
 
 
+def test_an_interrupt_in_the_midst_of_a_library_s_start_prints_no_traceback(monkeypatch, capsys):
+    """Extensions in C report it as an error of their own, as onnxruntime does."""
+
+    def interrupted(name: str) -> None:
+        raise ImportError("initialization failed") from KeyboardInterrupt()
+
+    monkeypatch.setattr("importlib.import_module", interrupted)
+    assert main(["train"]) == 130
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("importlib.import_module", lambda name: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["train"])
+
+
 def test_a_closed_standard_error_changes_no_exit_code_and_nothing_that_is_printed(monkeypatch, capsys):
     """As of a service that closed it."""
     monkeypatch.setattr(sys, "stderr", None)

@@ -11,7 +11,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode
-from tailor.schemas.errors import Rejected
+from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import ActionFinished, Contexts, ExecStatus, Message, Subgoals
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
@@ -58,10 +58,17 @@ class RecordedEpisodes:
         extractor, moved_unseen = EpisodeExtractor(domain), False
         for message in self._messages():
             moved_unseen |= message is None
-            found = () if message is None else extractor.read([message])[len(self.episodes) :]
+            found = () if message is None else self._found(extractor, message)
             self.episodes += [(name, replace(e, work_j=None) if moved_unseen else e) for name, e in found]
             if isinstance(message, ActionFinished):
                 moved_unseen = False
+
+    def _found(self, extractor: EpisodeExtractor, message: Message) -> list[tuple[str, Episode]]:
+        """Episodes that a message ends."""
+        try:
+            return extractor.read([message])[len(self.episodes) :]
+        except UsageError as error:  # knows no file
+            raise UsageError(f"{self.path}: {error}") from None
 
     def _messages(self) -> Iterator[Message | None]:
         """Messages in the order in which they were published; None for a sensor's that is left out."""

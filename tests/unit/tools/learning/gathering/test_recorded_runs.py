@@ -53,7 +53,8 @@ def test_recordings_need_no_simulated_body(tmp_path: Path, monkeypatch) -> None:
 
 def test_a_recording_of_another_robot_is_refused(tmp_path: Path, capsys) -> None:
     assert main(["gather", "powercube", "--from", str(RECORDING), "--out", str(tmp_path / "x")]) == 2
-    assert "recorded action 'approachBall', expected one of powercube: reach" in capsys.readouterr().err
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith(f"{RECORDING}: recorded action 'approachBall', expected one of powercube: reach")
     assert not (tmp_path / "x").exists()
 
 
