@@ -1,5 +1,6 @@
 """The `tailor` command: version, overview, help, unknown commands."""
 
+import importlib
 import io
 import re
 import subprocess
@@ -165,12 +166,9 @@ def test_an_interrupt_in_the_midst_of_a_library_s_start_prints_no_traceback(monk
     def interrupted(name: str) -> None:
         raise ImportError("initialization failed") from KeyboardInterrupt()
 
-    monkeypatch.setattr("importlib.import_module", interrupted)
+    monkeypatch.setattr(importlib, "import_module", interrupted)
     assert main(["train"]) == 130
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr("importlib.import_module", lambda name: 1 / 0)
-    with pytest.raises(ZeroDivisionError):
-        main(["train"])
 
 
 def test_a_closed_standard_error_changes_no_exit_code_and_nothing_that_is_printed(monkeypatch, capsys):

@@ -216,6 +216,7 @@ def test_gather_and_train_make_a_model_whose_card_says_how(tmp_path: Path, monke
         (["evaluate", "table9"], "evaluation 'table9' is unknown"),
         (["evaluate"], "no evaluation named"),
         (["evaluate", "models", "--domain", "r2d2"], "no domain 'r2d2'"),
+        (["evaluate", "models", "--domain", "soccer", "--runs", "5"], "--runs counts those of --on-policy, expected"),
         (["evaluate", "refinement"], "no domain named, expected --domain NAME"),
         (["evaluate", "refinement", "--domain", "soccer", "--seed", "x"], "--seed is 'x', expected a whole number"),
         (["gather", "agilo", "--from", "nowhere.mcap"], "nowhere.mcap"),

@@ -96,6 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.domain:
         raise UsageError("no domain named, expected --domain NAME")
     domain = arguments.domain
+    _check(arguments)
     quick = arguments.quick
     episodes = arguments.episodes or (QUICK_EPISODES if quick else EPISODES)
     settings = argparse.Namespace(
@@ -108,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
             "seed": arguments.seed if arguments.seed is not None else _first_seed(domain),
         }
     )
-    points = [Point(method, count) for count in episodes for method in arguments.methods]
+    points = [Point(method, count) for count in dict.fromkeys(episodes) for method in dict.fromkeys(arguments.methods)]
     found: dict[Point, list[dict[str, float]]] = {point: [] for point in points}
     for number in range(1, settings.sets + 1):  # whole curves first: a later call with more sets finds these again
         for point in points:
@@ -122,6 +123,15 @@ def run(arguments: argparse.Namespace) -> int:
     provenance = {**about, "models_sha256": "of each set its own"}
     publish_report(Report("learning-curves", title, rows, REMARKS, plots, provenance), arguments.json, arguments.report)
     return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Raise UsageError for flags that would be found wrong after hours of training, or without effect."""
+    if arguments.zoo:
+        raise UsageError(f"--zoo is {arguments.zoo}, expected none: learning-curves trains every model that it judges")
+    known = domains.scenarios(arguments.domain)
+    if arguments.scenario and arguments.scenario not in known:
+        raise UsageError(f"--scenario {arguments.scenario}: no such scenario, expected one of {', '.join(known)}")
 
 
 def _first_seed(domain: str) -> int:

@@ -22,6 +22,7 @@ from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.learning.gathering.policy_runs import MAX_ACTIONS
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
+RUNS = 400  # of each scenario of --on-policy
 FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
 REMARKS = (
     *model_rows.REMARKS,
@@ -34,13 +35,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     model_rows.configure(parser)
     add("--on-policy", nargs="+", default=[], metavar="SCENARIO", help="also test on the executive's choices in these")
-    add("--runs", type=at_least(1, "--runs"), default=400, help="runs of each of these (default %(default)s)")
+    add("--runs", type=at_least(1, "--runs"), help=f"runs of each of these (default {RUNS})")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; exit code 0."""
     if not arguments.domain:
         raise UsageError("no domain named, expected --domain NAME")
+    if arguments.runs and not arguments.on_policy:
+        raise UsageError("--runs counts those of --on-policy, expected none without it")
     domain, known = arguments.domain, domains.scenarios(arguments.domain)
     for name in arguments.on_policy:
         if name not in known:
@@ -61,7 +64,7 @@ def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
     seed, where = FIRST_RUN_SEED + first % RUN_SEEDS, (arguments.zoo, arguments.jobs, arguments.store)
     rows = []
     for scenario in tracked(arguments.on_policy, "scenarios"):
-        folder = fresh.chosen(robot, (scenario,), arguments.runs, seed, *where)
+        folder = fresh.chosen(robot, (scenario,), arguments.runs or RUNS, seed, *where)
         for action in modelled_actions(domain):
             data = read_data_set(folder / action)
             if any(episode.finished for episode in data.episodes):

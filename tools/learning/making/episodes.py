@@ -9,7 +9,7 @@ from tailor.tools.learning.gathering import policy_runs, random_episodes, run_da
 from tailor.tools.learning.gathering.active_episodes import Active, run_active
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.making.making import Making
-from tailor.tools.learning.recipe import Round
+from tailor.tools.learning.recipe import MAX_SEED, Round
 from tailor.tools.learning.recipe_checks import learned_beside
 from tailor.tools.parallel.steps import Step, counted
 
@@ -20,7 +20,7 @@ def gather_random(making: Making) -> Iterator[Step]:
     for action, count, folder, beside in _random_sets(making):
         objects = recipe.objects if beside else 0
         # of one seed, the tasks beside an object are those without; durations are learned and tested on both
-        seed = recipe.seed + (beside and not objects)
+        seed = recipe.seed + (MAX_SEED + 1 if beside and not objects else 0)  # no other recipe's
         drawn = (making.domain, action, count, seed, folder / action)
         spec = DataSetSpec(*drawn, beside=beside, objects=objects, profile=recipe.profile)
         random_episodes.prepare(spec, resume=True)

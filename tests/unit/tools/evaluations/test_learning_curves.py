@@ -77,3 +77,27 @@ def test_a_set_whose_models_hardly_ever_reach_the_goal_has_no_gain_and_ends_no_c
 def test_a_domain_must_be_named(capsys) -> None:
     assert main(["evaluate", "learning-curves"]) == 2
     assert "expected --domain NAME" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["--scenario", "chess"], "--scenario chess: no such scenario, expected one of approach-dribble, aligned"),
+        (["--zoo", "out/zoo"], "--zoo is out/zoo, expected none: learning-curves trains every model that it judges"),
+    ],
+)
+def test_what_would_be_found_wrong_after_hours_is_refused_at_once(monkeypatch, capsys, flags, message) -> None:
+    monkeypatch.setattr(learning_curves, "make", lambda making: pytest.fail("it began"))
+    assert main(["evaluate", "learning-curves", "--domain", "soccer", *flags]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+
+
+def test_a_point_that_is_named_twice_counts_its_sets_once(monkeypatch, capsys) -> None:
+    """Intervals are over sets of models; a set that counts twice would make them too narrow."""
+    monkeypatch.setattr(
+        learning_curves, "_figures", lambda point, number, _: {"improvement_pct": float(number), "error_pct": 2.0}
+    )
+    flags = ["--domain", "soccer", "--episodes", "100", "100", "--methods", "random", "random", "--sets", "2", "--json"]
+    assert main(["evaluate", "learning-curves", *flags]) == 0
+    assert [row["sets"] for row in json.loads(capsys.readouterr().out)["rows"]] == [2]
