@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-import os
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from tailor.models.episodes.manifest import read_manifest
 from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
 from tailor.models.episodes.sources import CALIBRATES, PROBE, end_of, probe_of, source_files, source_of
+from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -95,12 +95,9 @@ def part_bytes(episodes: Iterable[Episode], names: Sequence[str]) -> bytes:
 
 
 def store_part(path: Path, file: bytes) -> None:
-    """Write the bytes of a part, atomically; if there are none, nothing is written."""
-    if not file:
-        return
-    temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    temporary.write_bytes(file)
-    temporary.replace(path)
+    """Write the bytes of a part, atomically; if there are none, nothing is written. See `write_whole`."""
+    if file:
+        write_whole(path, file)
 
 
 def _writer(file: BytesIO, table: pa.Table) -> pq.ParquetWriter:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from tailor.models.cards.json_shape import arguments_error, is_count
+from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json, shown
 
@@ -63,10 +63,8 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Any]) -> None:
-    """Write the manifest of a data set atomically."""
-    temporary = folder / f".{MANIFEST}.{os.getpid()}"
-    temporary.write_text(json.dumps(manifest, indent=1) + "\n")
-    temporary.replace(folder / MANIFEST)
+    """Write the manifest of a data set atomically. Raises UsageError, as on a full disk."""
+    write_whole(folder / MANIFEST, (json.dumps(manifest, indent=1) + "\n").encode())
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:

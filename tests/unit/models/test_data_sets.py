@@ -1,6 +1,9 @@
 """Data sets of episodes: what is damaged, of something else, or there twice is refused in one line that names it."""
 
+import errno
 import json
+import os
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -235,3 +238,26 @@ def test_rounds_in_which_an_action_never_ran_are_no_copies_of_one_another(folder
     assert (len(merged.episodes), len(merged.manifest["sources"])) == (6, 3)
     with pytest.raises(UsageError, match=r"hold the same episodes of goToPose \(seed 2\)"):
         merge([read_data_set(folder), *[read_data_set(tmp_path / "2")] * 2])
+
+
+@pytest.mark.parametrize("at", ["write_bytes", "replace"])
+def test_a_full_disk_is_named_with_the_file_and_leaves_nothing_half_written(folder: Path, monkeypatch, at: str) -> None:
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    writing = Path.write_bytes
+
+    def full(path: Path, *content: bytes) -> None:
+        writing(path, b"half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))  # as a write says it: of no file
+
+    monkeypatch.setattr(Path, at, full)
+    episode = Episode(9, np.zeros(8), np.zeros((3, 8)), 1.0, True, "")
+    for path, write in (
+        (folder / "part-000009.parquet", lambda: write_part(folder / "part-000009.parquet", [episode], NAMES)),
+        (folder / "manifest.json", lambda: write_manifest(folder, {"robot": "other"})),
+    ):
+        with pytest.raises(
+            UsageError, match=re.escape(f"{path}: No space left on device, expected a file that can be")
+        ):
+            write()
+    monkeypatch.undo()
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before

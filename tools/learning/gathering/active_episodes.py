@@ -18,6 +18,7 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import Episode, write_part
+from tailor.models.episodes.whole_files import write_whole
 from tailor.tools.learning.gathering import data_set_spec
 from tailor.tools.learning.gathering.choosing_models import prepare_chosen
 from tailor.tools.learning.gathering.random_episodes import PART
@@ -107,9 +108,7 @@ def _refine_all(active: Active, missing: Sequence[int], jobs: int) -> Iterator[i
     """Write the choices of the missing situations; yields numbers of situations."""
     for number, rows in completed(_refine, [(active, first) for first in missing], jobs):
         path = _pool_path(active, missing[number])
-        temporary = path.with_suffix(".tmp")
-        temporary.write_text(json.dumps([[c.data_set, c.action, c.arguments, c.std_s] for c in rows]))
-        temporary.replace(path)
+        write_whole(path, json.dumps([[c.data_set, c.action, c.arguments, c.std_s] for c in rows]).encode())
         yield len(_some(active, missing[number]))
 
 
