@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -147,20 +148,27 @@ def reproduction_command(
     if request.command:
         return request.command
     robot, action = request.robot, next(iter(manifests.values()))["action"]
-    data = "" if not request.data else " --data " + " ".join(map(str, request.data))
+    data = "" if not request.data else " --data " + _words(request.data)
     train = f"tailor train {robot} {action}{data} --features {spaces['duration'].name}"
     if spaces["energy"] is not spaces["duration"]:
         train += f" --energy-features {spaces['energy'].name}"
     train += f" --learner {request.learner} --failure-learner {request.failure_learner}"
     train += f" --clearance-learner {request.clearance_learner} --seed {request.seed}"
-    gathering = [f"{_gather_command(robot, manifest)} --out {path.parent}" for path, manifest in manifests.items()]
+    gathering = [
+        f"{_gather_command(robot, manifest)} --out {_words([path.parent])}" for path, manifest in manifests.items()
+    ]
     return " && ".join([*gathering, train])
+
+
+def _words(names: Iterable[Path | str]) -> str:
+    """Names as words of a shell."""
+    return " ".join(shlex.quote(str(name)) for name in names)
 
 
 def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
     """The command that gathered a data set."""
     if "recordings" in manifest:
-        return f"tailor gather {robot} --from {' '.join(manifest['recordings'])}"
+        return f"tailor gather {robot} --from {_words(manifest['recordings'])}"
     number = f"--episodes {manifest.get('episodes')} --seed {manifest.get('seed')}"
     profile = f" --profile {manifest['profile']}" if manifest.get("profile") else ""
     return f"tailor gather {robot} {_drawn(manifest)} {number}{profile}"

@@ -132,7 +132,11 @@ def _pool_path(active: Active, first: int) -> Path:
 
 def _pool(active: Active) -> list[Choice]:
     paths = [_pool_path(active, first) for first in range(0, len(active.situations), CHUNK)]
-    return [choice for path in paths for choice in read_choices(path)]
+    widths = {
+        (action.duration_model.split("/")[0], name): len(action.parameters)
+        for name, action in domains.load(active.domain).actions.items()
+    }
+    return [choice for path in paths for choice in read_choices(path, widths)]
 
 
 def _part(active: Active, data_set: str, first: int) -> Path:

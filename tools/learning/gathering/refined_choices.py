@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -33,18 +34,26 @@ class Choice:
     std_s: float
 
 
-def read_choices(path: Path) -> list[Choice]:
+def read_choices(path: Path, widths: Mapping[tuple[str, str], int]) -> list[Choice]:
     """Choices that `active_episodes` has stored.
 
+    Args:
+      path: The file.
+      widths: Numbers of arguments, by data set and action.
+
     Raises:
-      UsageError: The file is damaged.
+      UsageError: The file is damaged, or holds a choice of something else.
     """
     expected = "choices of situations (remove it, and --resume refines them again)"
     rows = read_json(path, expected)
     try:
-        return [Choice(str(name), str(action), tuple(map(float, row)), float(std)) for name, action, row, std in rows]
+        found = [Choice(str(name), str(action), tuple(map(float, row)), float(std)) for name, action, row, std in rows]
     except (TypeError, ValueError):
         raise UsageError(f"{path}: has another shape, expected {expected}") from None
+    for each in found:
+        if widths.get((each.data_set, each.action)) != len(each.arguments) or not np.isfinite(each.arguments).all():
+            raise UsageError(f"{path}: a choice of {each.action} is not one of its arguments, expected {expected}")
+    return found
 
 
 class _DecidedError(Exception):

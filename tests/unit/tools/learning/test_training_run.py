@@ -1,6 +1,7 @@
 """Training beside objects: which models there are, and that training and test never share a run."""
 
 import json
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -190,3 +191,15 @@ def test_a_model_that_fails_its_own_checks_does_not_replace_the_former_one(tmp_p
     assert str(caught.value).startswith(f"{card}: card's episodes' source_files are")
     assert str(caught.value).endswith("such a model is not written, what was there stays")
     assert {path: path.read_bytes() for path in zoo.rglob("*duration*")} == former
+
+
+def test_the_command_in_a_card_is_one_for_a_shell_also_where_names_have_blanks() -> None:
+    folder = Path("my data/goToPose")
+    request = TrainingRequest("agilo", Path(), data=(folder.parent,))
+    manifest = {"action": "goToPose", "recordings": ["a b.mcap", "c.mcap"]}
+    command = reproduction_command(request, spaces_by_kind(request, NAMES[:8], folder), {folder: manifest})
+    gathering, training = command.split(" && ")
+    assert shlex.split(gathering) == [
+        "tailor", "gather", "agilo", "--from", "a b.mcap", "c.mcap", "--out", "my data"
+    ]  # fmt: skip
+    assert shlex.split(training)[3:6] == ["goToPose", "--data", "my data"]

@@ -73,7 +73,19 @@ def test_more_episodes_of_the_same_situations_are_refused(gathered: Path, capsys
     assert len(data.episodes) == data.manifest["episodes"] == 2
 
 
-@pytest.mark.parametrize("content", [b"", b"\0\xff", b"[[1]]", b"null", b'[["reach", "reach", [0.0], null]]'])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\0\xff",
+        b"[[1]]",
+        b"null",
+        b'[["reach", "reach", [0.0], null]]',
+        b'[["reach", "reach", [0.0], 1.0]]',
+        b'[["fly", "fly", [0.0], 1.0]]',
+        b'[["reach", "reach", [NaN,0,0,0,0,0,0,0,1,1], 1.0]]',
+    ],
+)
 def test_a_damaged_file_of_choices_is_refused_in_one_line(gathered: Path, tmp_path: Path, capsys, content) -> None:
     shutil.copytree(gathered, tmp_path / "out")
     (pool,) = (tmp_path / "out").glob("pool-*.json")
