@@ -85,8 +85,8 @@ def test_messages_of_other_sensors_are_not_judged():
     assert measurement_fault(KITCHEN, HERE, KITCHEN.message((0.1,) * len(KITCHEN.axes), 0)) == ""
 
 
-def driven(spoiled, key=KEY, ticks=60):
-    """States of a drive of scenario one-cup, whose samples of a key pass through `spoiled` from tick 30 to 49."""
+def driven(spoiled, key=KEY, ticks=60, first=30):
+    """States of a drive of scenario one-cup, whose samples of a key pass through `spoiled` in 20 ticks."""
     scenario, start = domains.seeded_scenario("kitchen", "one-cup", 3)
     context = make_context(KITCHEN, scenario, Models(*load_robot("b21")), GREEDY, SENDER)
     link = DriverLink(KITCHEN, World(body_of("kitchen", ""), start, 3), SENDER)
@@ -94,7 +94,7 @@ def driven(spoiled, key=KEY, ticks=60):
     samples, _ = link.advance(0)
     for tick in range(1, ticks):
         now_ns = tick * PERIOD_NS
-        kept = (spoiled(s) if s.key == key and 30 <= tick < 50 else s for s in samples)
+        kept = (spoiled(s) if s.key == key and first <= tick < first + 20 else s for s in samples)
         inputs, goal = Inputs(tuple(s for s in kept if s is not None), goal), ""
         state, outputs = step(context, state, now_ns, inputs, CheckBudget(300))
         states.append(state)

@@ -60,8 +60,8 @@ def test_an_argument_that_is_always_the_same_has_a_range_without_width(monkeypat
         ("soccer", "goToPose", True, "obstacle_r", 0.1, 0.3),
         ("arm", "reach", False, "a", -1.3, 1.3),
         ("kitchen", "goToPose", True, "box_r", 0.0, 0.3),
-        ("kitchen", "goToPose", True, "box_x", -5.0, 5.0),
-        ("kitchen", "goToPose", False, "v", 0.0, 0.0),
+        ("kitchen", "goToPose", True, "box_x", -4.35, 4.7),
+        ("kitchen", "goToPose", False, "v", 0.0, 0.6),
     ],
 )
 def test_the_ranges_of_the_models_that_ship_stay(domain, action, beside, name, lower, upper) -> None:
