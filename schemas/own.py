@@ -60,6 +60,8 @@ def _field(name: str, hint: Any, most: float) -> tuple[Convert, Convert]:
         return lambda values: np.array(values, dtype=np.float64), _numbers(most)
     if element is int:
         return lambda values: np.array(values, dtype=np.int64), lambda values: tuple(values.tolist())
+    if element is bool:
+        return lambda values: np.array(values, dtype=np.bool_), lambda values: tuple(values.tolist())
     if element is str:
         return list, tuple
     write, read = converters(element, most)

@@ -12,6 +12,7 @@ from tailor.schemas import messages as m
 from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.package_topics import PackageTopics, add_topics
 from tailor.schemas.packages.topic import Priority, Source, Topic
+from tailor.schemas.type_faults import faults_of_fields
 
 __all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "is_rate", "key_of", "nominal_rates_hz", "reports"]
 
@@ -76,7 +77,7 @@ class TopicTable(Mapping[str, Topic]):
 
     @cached_property
     def _read(self) -> PackageTopics:
-        return add_topics(_SHIPPED, packages())
+        return add_topics(_SHIPPED, packages(), faults_of_fields)
 
 
 TOPICS = TopicTable()

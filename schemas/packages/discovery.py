@@ -63,7 +63,7 @@ def _is_ours(point: EntryPoint) -> bool:
 def _read(point: EntryPoint) -> Package:
     try:
         spec = point.load()
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # a script of a user may end itself where something is missing
         return Package(point.name, point.value, None, (f"cannot be loaded: {type(error).__name__}: {error}",))
     if not isinstance(spec, DomainSpec):
         return Package(point.name, point.value, None, (f"is a {type(spec).__name__}, expected a DomainSpec",))

@@ -28,6 +28,7 @@ class Gripper(Message):
     stamp_ns: int
     width_m: float
     fingers: tuple[str, ...] = ()
+    held: tuple[bool, ...] = ()
 
 TOPICS = {
     "claw": Topic("{robot}/claw", Gripper, 10, "driver"),

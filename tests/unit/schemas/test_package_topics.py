@@ -1,7 +1,7 @@
 """Topics of a robot's package enter table, codec, access rules and recordings without an edit of ours."""
 
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import dataclass, make_dataclass, replace
+from typing import Any, ClassVar
 
 import pytest
 
@@ -11,6 +11,7 @@ from tailor.schemas.packages.package_topics import add_topics
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.packages.topic import Topic
 from tailor.schemas.topics import TOPICS
+from tailor.schemas.type_faults import faults_of_fields
 from tests.support.robots.robot_package import MESSAGES, SPEC, install, run_with
 
 USE = """
@@ -20,7 +21,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.schemas.typesystem import definition, ros_type, type_hash, type_of
 from courier_robot.messages import Gripper
 prime()
-message = Gripper(5, 0.02, ("left", "right"))
+message = Gripper(5, 0.02, ("left", "right"), (True, False))
 assert decode(TOPICS["claw"], encode(message)) == message
 assert decode(TOPICS["grip"], encode(Gripper(5, 0.02, ("x" * 100,)))).reason == "too long"
 assert ros_type(Gripper) == "courier_msgs/msg/Gripper"
@@ -87,6 +88,15 @@ class Imitated(Message):
     stamp_ns: int
 
 
+def message(*fields: tuple[str, Any], **names: str) -> type:
+    """A message of a package with these fields."""
+    namespace = {"ROS_PACKAGE": "courier_msgs", **names}
+    return make_dataclass("Made", fields, bases=(Message,), namespace=namespace, frozen=True)
+
+
+Part = make_dataclass("Part", [("x", dict)], frozen=True)
+Shape = make_dataclass("Shape", [("x", float)], frozen=True)  # also a part of our scenes
+STAMP = ("stamp_ns", int)
 GOOD = Topic("{robot}/grip", Grip, 10, "driver")
 ROWS = {
     "is a int, expected a table": 7,
@@ -104,13 +114,39 @@ ROWS = {
     "expected a frozen dataclass derived from Message": {"grip": replace(GOOD, type=int)},
     "has the ROS_PACKAGE tailor_msgs": {"grip": replace(GOOD, type=Unnamed)},
     "has the name std_msgs/msg/Bool of another": {"grip": replace(GOOD, type=Imitated)},
+    "7: expected text as the name": {7: GOOD},
+    "key is None, expected text": {"grip": replace(GOOD, key=None)},
+    "key is '{robot}//grip'": {"grip": replace(GOOD, key="{robot}//grip")},
+    "key is '{robot}/'": {"grip": replace(GOOD, key="{robot}/")},
+    "key is '{robot}/a grip'": {"grip": replace(GOOD, key="{robot}/a grip")},
+    "rate_hz is '10'": {"grip": replace(GOOD, rate_hz="10")},
+    "fresh_s is '0.5'": {"grip": replace(GOOD, fresh_s="0.5")},
+    "fresh_s is 0": {"grip": replace(GOOD, fresh_s=0)},
+    "max_bytes is '4096'": {"grip": replace(GOOD, max_bytes="4096")},
+    "max_bytes is -1": {"grip": replace(GOOD, max_bytes=-1)},
+    "recorded is 'no'": {"grip": replace(GOOD, recorded="no")},
+}
+TYPES = {
+    "field 'x' is <class 'dict'>, expected int, float, bool": message(("x", dict)),
+    "field 'x' may be None": message(("x", float | None)),
+    "type Part: field 'x' is <class 'dict'>": message(("x", tuple[Part, ...])),
+    "type Shape has the name tailor_msgs/msg/Shape of another": message(("x", tuple[Shape, ...])),
+    "name 'Missing' is not defined": message(("x", "Missing")),
+    "expected at least one field": message(),
+    "expected stamp_ns: int as the first field": message(("x", float), STAMP),
+    "no field 'header' beside it": message(STAMP, ("header", int)),
+    "field '_x', expected a name of ROS 2": message(("_x", float)),
+    "its ROS name is 'my msgs/msg/Made'": message(STAMP, ROS_PACKAGE="my msgs"),
+    "ROS_TYPE is 'my_msgs/msg/X', expected one of ROS 2's": message(STAMP, ROS_TYPE="my_msgs/msg/X"),
+    "are not those of std_msgs/msg/Float64: data": message(("value", float), ROS_TYPE="std_msgs/msg/Float64"),
+    "has the ROS_TYPE 5, expected text": message(STAMP, ROS_TYPE=5),
 }
 
 
 def added(table, monkeypatch):
     monkeypatch.setattr("tests.unit.schemas.test_package_topics.OFFERED", table, raising=False)
     spec = DomainSpec("courier", "pedelec", "m:make", draw="m:draw", topics=f"{__name__}:OFFERED")
-    return add_topics(TOPICS, [Package("courier", "m:SPEC", spec, ())])
+    return add_topics(TOPICS, [Package("courier", "m:SPEC", spec, ())], faults_of_fields)
 
 
 def test_good_topics_are_added(monkeypatch):
@@ -124,3 +160,21 @@ def test_each_fault_is_named(fault, monkeypatch):
     result = added(ROWS[fault], monkeypatch)
     assert fault in "; ".join(result.faults["courier"])
     assert set(result.topics) == set(TOPICS)
+
+
+@pytest.mark.parametrize("fault", TYPES)
+def test_a_type_that_no_codec_carries_is_refused_for_its_own_package_alone(fault, monkeypatch):
+    result = added({"grip": replace(GOOD, type=TYPES[fault])}, monkeypatch)
+    assert fault in "; ".join(result.faults["courier"])
+    assert set(result.topics) == set(TOPICS)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        message(("data", float), ROS_TYPE="std_msgs/msg/Float32"),
+        message(STAMP, ("flags", tuple[bool, ...]), ("names", tuple[str, ...])),
+    ],
+)
+def test_a_type_that_a_codec_carries_is_accepted(kind, monkeypatch):
+    assert added({"grip": replace(GOOD, type=kind)}, monkeypatch).faults == {}

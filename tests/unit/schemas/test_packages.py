@@ -31,6 +31,7 @@ def courier(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "__init__.py").write_text(MODULE)
     (folder / "broken.py").write_text("1 / 0\n")
+    (folder / "ending.py").write_text("raise SystemExit('no camera')\n")
     (folder / "typo.py").write_text("def make(:\n")
     (folder / "domain.py").write_text("def make():\n    return 'made'\n")
     (folder / "driver.toml").write_text("robot = 'pedelec'\n")
@@ -123,6 +124,7 @@ def test_a_field_that_is_no_text_is_a_fault():
     ("value", "fault"),
     [
         (".broken:SPEC", "cannot be loaded: ZeroDivisionError: division by zero"),
+        (".ending:SPEC", "cannot be loaded: SystemExit: no camera"),
         (".missing:SPEC", "cannot be loaded: ModuleNotFoundError"),
         (":MISSING", "cannot be loaded: AttributeError"),
         (":NO_SPEC", "is a int, expected a DomainSpec"),
