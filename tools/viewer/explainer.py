@@ -80,8 +80,12 @@ class Explainer:
         return best_cost(message, context.domain.actions, context.models, settings, rng, objects=objects)
 
     def fields(self, message: Subgoals) -> Fields | None:
-        """The explanation as the page reads it."""
-        explanation = self.explanation(message)
+        """The explanation as the page reads it; None also if the models do not suit the settings of the run."""
+        try:
+            explanation = self.explanation(message)
+        except UsageError as error:  # of a foreign executive's provenance: no page ends with it
+            self.missing = str(error)
+            return None
         return None if explanation is None else fields_of(explanation)
 
 

@@ -68,7 +68,7 @@ def explain(
     if they were published in the same tick.
     """
     sequence = sequence_of(message, library, objects)
-    if sequence is None:
+    if sequence is None or message.horizon < 1:
         return None
     settings = replace(settings, horizon=message.horizon)
     chosen = chosen_values(message)

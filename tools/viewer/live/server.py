@@ -9,7 +9,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
@@ -62,6 +62,10 @@ class _Handler(BaseHTTPRequestHandler):
     stop: StopEndpoint | None
     timeout = 10  # seconds, of an idle socket
 
+    def handle(self) -> None:
+        with suppress(OSError):  # the other end is gone, or reads nothing: the base class prints a traceback
+            super().handle()
+
     def do_GET(self) -> None:
         if self._closed_or_foreign():
             return
@@ -69,6 +73,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._send_body(self.document, "text/html; charset=utf-8")
         elif self.path != "/events":
             self.send_error(404)
+        elif self.headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
+            self.send_error(HTTPStatus.FORBIDDEN)  # pages of other sites would take the places of ours
         elif self.broadcast.pages >= MAX_PAGES:
             self.send_error(503, "too many pages")
         else:

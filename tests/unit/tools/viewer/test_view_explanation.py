@@ -171,3 +171,17 @@ def test_a_damaged_message_has_no_explanation(refined, damage) -> None:
     damaged = replace(message, actions=(replace(first, parameters=parameters), *others))
     assert sequence_of(damaged, LIBRARY) is None
     assert explained(damaged) is None
+
+
+def test_a_message_without_a_horizon_has_no_explanation(refined) -> None:
+    assert explained(replace(message_of(*refined), horizon=0)) is None
+
+
+def test_models_that_do_not_suit_the_settings_of_a_run_end_no_page(refined, monkeypatch) -> None:
+    def explaining(_: Subgoals) -> None:
+        raise UsageError("action drive needs the model drive/energy")
+
+    explainer = Explainer()
+    monkeypatch.setattr(explainer, "explanation", explaining)
+    assert explainer.fields(message_of(*refined)) is None
+    assert explainer.missing == "action drive needs the model drive/energy"

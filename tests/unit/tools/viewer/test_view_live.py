@@ -5,6 +5,8 @@ from __future__ import annotations
 import http.client
 import json
 import socket
+import struct
+import threading
 from contextlib import contextmanager
 
 import pytest
@@ -22,7 +24,7 @@ from tailor.tools.viewer.live.broadcast import MAX_WAITING, EventBroadcast
 from tailor.tools.viewer.live.bus_listener import BusListener
 from tailor.tools.viewer.live.server import serving
 from tailor.tools.viewer.timeline import Event, RunTimeline
-from tests.support.patience import PATIENCE_S
+from tests.support.patience import PATIENCE_S, wait_until
 
 
 def tick(at_s: float) -> Event:
@@ -57,9 +59,9 @@ def next_events(lines) -> list:
     raise AssertionError("the stream has ended")
 
 
-def get(port: int, path: str, host: str = "127.0.0.1") -> int:
+def get(port: int, path: str, host: str = "127.0.0.1", **headers: str) -> int:
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
-    connection.request("GET", path, headers={"Host": host})
+    connection.request("GET", path, headers={"Host": host, **headers})
     return connection.getresponse().status
 
 
@@ -149,6 +151,25 @@ def test_a_host_name_that_resolves_here_is_refused() -> None:
         assert get(port, "/", host="evil.example:80") == 403
         assert get(port, "/events", host="evil.example") == 403
         assert get(port, "/", host=f"localhost:{port}") == 200
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site"])
+def test_a_page_of_another_site_takes_no_place_of_ours_but_may_link_to_us(site: str) -> None:
+    with serving("page", EventBroadcast(), 0) as port:
+        assert get(port, "/events", **{"Sec-Fetch-Site": site}) == 403
+        assert get(port, "/", **{"Sec-Fetch-Site": site}) == 200
+
+
+def test_a_connection_that_is_reset_prints_nothing(capfd) -> None:
+    with serving("page", EventBroadcast(), 0) as port:
+        for request in (b"", b"GE", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"):
+            connection = socket.create_connection(("127.0.0.1", port))
+            connection.sendall(request)
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            connection.close()  # with a reset
+        assert get(port, "/") == 200
+        wait_until(lambda: not [thread for thread in threading.enumerate() if "process_request" in thread.name])
+    assert capfd.readouterr().err == ""
 
 
 def test_the_server_listens_on_this_machine_alone() -> None:
