@@ -50,8 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     end, notifier = BusEnd(arguments, stop_on_signals()), Notifier.from_environment()
     set_for_loop()
     deployment = deployment_from(arguments)
-    config = executive_config(arguments.domain, deployment)
     check_package(arguments.domain)
+    config = executive_config(arguments.domain, deployment)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_models(context)
     driver = driver_of(context.domain.robot, arguments.driver)

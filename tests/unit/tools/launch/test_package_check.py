@@ -7,8 +7,10 @@ import pytest
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
+from tailor.tools.commands.run import executive
 from tailor.tools.launch import package_check, scenario_check
 from tailor.tools.launch.package_check import check_package, faults_of_package
+from tailor.tools.main import main
 
 NAN = float("nan")
 
@@ -93,9 +95,10 @@ def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, f
 
 @pytest.fixture
 def scenarios(tmp_path, monkeypatch):
-    """An empty folder of soccer's scenarios, and the faults found in it."""
+    """An empty folder of soccer's scenarios, and the faults found in it; `draw` reads `leg_m` alone."""
     folder = tmp_path / "scenarios"
     folder.mkdir()
+    monkeypatch.setattr(scenario_check, "part", lambda *_: lambda declared, _: (declared["leg_m"], {}, ()))
     for module in (domains, scenario_check):
         monkeypatch.setattr(module, "file", lambda *_: folder)
     return folder, lambda: list(faults_of_package(spec_of("soccer"), domains.load("soccer")))
@@ -118,12 +121,13 @@ def test_scenarios_that_are_missing_are_named(scenarios):
         (b"problem = 'b.pddl'", "problem is 'b.pddl', expected a file beside it"),
         (b"problem = 'a.pddl'\norder = 'last'", "order is 'last', expected a number"),
         (b"problem = 'a.pddl'\nsettings = 1", "settings is 1, expected a table"),
+        (b"problem = 'a.pddl'\nlegs_m = [1, 2]", "cannot be drawn: KeyError: 'leg_m'"),
     ],
 )
 def test_each_fault_of_a_scenario_file_is_named_with_the_file(scenarios, text, fault):
     folder, faults = scenarios
     (folder / "a.pddl").write_text("(define (problem a))")
-    (folder / "good.toml").write_text("problem = 'a.pddl'\norder = 2")
+    (folder / "good.toml").write_text("problem = 'a.pddl'\norder = 2\nleg_m = 1")
     assert faults() == []
     (folder / "bad.toml").write_bytes(text)
     [found] = faults()
@@ -147,3 +151,14 @@ def test_without_that_check_a_scenario_file_that_is_no_toml_is_named_too(scenari
     (folder / "bad.toml").write_bytes(text)
     with pytest.raises(UsageError, match=rf"domain soccer: .*/bad\.toml: {fault}"):
         domains.scenarios("soccer")
+
+
+def test_the_executive_reads_the_scenarios_of_a_checked_package_only(monkeypatch, capsys):
+    def refused(_):
+        raise UsageError("scenarios/tour.toml: order is 'last', expected a number")
+
+    monkeypatch.setattr(executive, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(executive, "check_package", refused)
+    monkeypatch.setattr(domains, "scenarios", lambda _: sorted(["last", 2]))
+    assert main(["executive", "soccer"]) == 2
+    assert "order is 'last'" in capsys.readouterr().err

@@ -6,6 +6,7 @@ import sys
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tailor.schemas.errors import UsageError
@@ -40,6 +41,18 @@ def test_what_is_written_has_the_style_and_the_types_of_our_own_code(kind: str, 
     for command in (["ruff", "check", *config, "."], ["ruff", "format", "--check", *config, "."], MYPY):
         done = subprocess.run([sys.executable, "-m", *command], capture_output=True, text=True, cwd=folder)
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(("kind", "leg"), [("wheeled", "leg_m"), ("arm", "leg_rad")])
+def test_a_leg_that_fits_nowhere_is_refused_and_not_drawn_for_ever(kind: str, leg: str) -> None:
+    files, module = rendered("cart", kind), {"__name__": "drawing"}
+    exec(files["cart/drawing.py"], module)
+    for path in (path for path in files if path.startswith("cart/scenarios/") and path.endswith(".toml")):
+        declared = tomllib.loads(files[path])
+        labels = declared["stations" if kind == "wheeled" else "waypoints"]
+        assert len(module["draw"](declared, np.random.default_rng(0))[1]) == len(labels)
+        with pytest.raises(ValueError, match=f"{leg} is 99 to 100, expected a leg that fits"):
+            module["draw"]({**declared, leg: [99, 100]}, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("kind", kinds())
