@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Literal
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
+from tailor.schemas.ros2.profiles import MAX_DOMAIN
 from tailor.schemas.settings import from_table
 
 MAX_RATE_HZ = 100.0  # of the driver's loop
+TOPIC = re.compile(r"/?[\w-]+(/[\w-]+)*", re.ASCII)  # zenoh opens no other key, and some are patterns
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +95,12 @@ def _faults(settings: PlainSettings) -> list[str]:
         faults.append("topics.pose is empty: expected a localiser, or pose.start")
     if not topics.cmd_vel or not topics.odom:
         faults.append("topics.cmd_vel and topics.odom: expected a name each")
-    if settings.bus.domain_id < 0:
-        faults.append(f"bus.domain_id is {settings.bus.domain_id}, expected at least 0")
+    names = {"cmd_vel": topics.cmd_vel, "odom": topics.odom, "pose": topics.pose}
+    faults += [
+        f"topics.{each} is {name!r}, expected a name of ROS 2 such as /base/{each}"
+        for each, name in names.items()
+        if name and not TOPIC.fullmatch(name)
+    ]
+    if not 0 <= settings.bus.domain_id <= MAX_DOMAIN:
+        faults.append(f"bus.domain_id is {settings.bus.domain_id}, expected 0 to {MAX_DOMAIN}")
     return faults

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.rights.run_folder import run_folder
+from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.simnodes.driver_spec import shipped_driver_spec
@@ -45,7 +47,13 @@ def _check_commands(file: str, robot: str) -> None:
 
 
 def _check_bus(file: str, settings: PlainSettings, endpoint: str) -> None:
-    """Raise UsageError if the robot's topics cannot be on the bus that is to carry them."""
+    """Raise UsageError if the robot's topics cannot be on the bus that is to carry them, or it cannot be opened."""
+    try:
+        check_endpoint(settings.bus.connect or endpoint)
+        if settings.bus.key:
+            identity_in(settings.bus.key)
+    except UsageError as error:
+        raise UsageError(f"{file}: {error}") from error
     if settings.bus.connect not in ("", endpoint):
         return
     ours = {f"{settings.robot}/{name}" for name in ("cmd_vel", "odom", "pose")}

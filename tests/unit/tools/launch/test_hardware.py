@@ -25,3 +25,18 @@ def test_one_that_obeys_cmd_vel_is_not_nor_one_whose_commands_nobody_knows_yet(t
     file = tmp_path / "robot.toml"
     file.write_text(f'robot = "{robot}"\n{ELSEWHERE}')
     assert hardware_of(str(file), "tcp/127.0.0.1:7447").robot == robot
+
+
+@pytest.mark.parametrize(
+    ("bus", "fault"),
+    [
+        ('connect = "192.168.0.7:7447"', "bus endpoint '192.168.0.7:7447': expected PROTOCOL/HOST:PORT"),
+        ('connect = "tls/192.0.2.1:7448"\nkey = "/nowhere"', "/nowhere: no authority.pem, expected a folder"),
+    ],
+)
+def test_a_bus_that_can_never_be_opened_is_refused_at_once_and_not_tried_for_ever(tmp_path, bus, fault):
+    file = tmp_path / "robot.toml"
+    file.write_text(f'robot = "agilo"\n[bus]\n{bus}\n')
+    with pytest.raises(UsageError) as refused:
+        hardware_of(str(file), "tcp/127.0.0.1:7447")
+    assert str(refused.value).startswith(f"{file}: {fault}")
