@@ -10,6 +10,7 @@ from enum import Enum
 
 ADMIN_SPACE = "@ros2_lv"  # of the tokens; `**` does not match a part that begins with @
 DEFAULT_DEPTH = 10  # of history
+MAX_DIGITS = 3  # of a ROS_DOMAIN_ID; a stranger's key may have thousands, which Python refuses to convert
 
 
 class Kind(Enum):
@@ -115,7 +116,7 @@ def parsed_key(key: str) -> tuple[int, Named] | None:
     """Domain and topic of a data key; None for any other key."""
     domain, _, rest = key.partition("/")
     parts = rest.rsplit("/", 2)
-    if not domain.isdecimal() or len(parts) != 3 or not parts[2].startswith("RIHS01_"):
+    if not domain.isdecimal() or len(domain) > MAX_DIGITS or len(parts) != 3 or not parts[2].startswith("RIHS01_"):
         return None
     kind = ros_name(parts[1])
     return (int(domain), Named(parts[0], kind, parts[2])) if kind else None

@@ -47,6 +47,10 @@ def test_any_other_text_is_neither(text):
     assert parsed_token(f"@ros2_lv/{text}") is None
 
 
+def test_a_domain_of_more_digits_than_python_converts_is_none():
+    assert parsed_key(STRING.key("9" * 5000)) is None
+
+
 def test_a_plain_key_of_ours_is_no_key_of_ros():
     assert parsed_key("agilo/odom") is None
     assert parsed_key("0/agilo/odom") is None
