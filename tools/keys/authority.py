@@ -14,8 +14,9 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from tailor.runtime.bus.rights.credentials import AUTHORITY, CERTIFICATE, PRIVATE_KEY
+from tailor.schemas.errors import UsageError
+from tailor.tools.keys.registry import AUTHORITY_KEY
 
-AUTHORITY_KEY = "authority-key.pem"  # stays on the machine where keys are made
 CLOCK_SKEW = timedelta(days=1)  # machines whose clock was never set are common on robots
 
 
@@ -27,12 +28,25 @@ class Authority:
 
     @classmethod
     def of(cls, keys: Path, now: datetime, days: int) -> Authority:
-        """The authority in a folder, made now if there is none."""
-        if not (keys / AUTHORITY_KEY).exists():
+        """The authority in a folder, made now if there is none.
+
+        Raises:
+          UsageError: One of its two files is missing or damaged, or they are of two authorities. A new one would make
+            the keys of the old one useless.
+        """
+        files = (keys / AUTHORITY, keys / AUTHORITY_KEY)
+        missing = [file for file in files if not file.exists()]
+        if len(missing) == 1:
+            raise UsageError(f"{missing[0]}: is missing, expected it in its place: it belongs to the keys made so far")
+        if missing:
             _make(keys, now, days)
-        certificate = x509.load_pem_x509_certificate((keys / AUTHORITY).read_bytes())
-        key = serialization.load_pem_private_key((keys / AUTHORITY_KEY).read_bytes(), None)
-        assert isinstance(key, ec.EllipticCurvePrivateKey)
+        try:
+            certificate = x509.load_pem_x509_certificate(files[0].read_bytes())
+            key = serialization.load_pem_private_key(files[1].read_bytes(), None)
+        except (ValueError, TypeError) as error:  # TypeError: somebody has encrypted it
+            raise UsageError(f"{files[0]}, {files[1]}: cannot be read as PEM: {error}") from error
+        if not isinstance(key, ec.EllipticCurvePrivateKey) or certificate.public_key() != key.public_key():
+            raise UsageError(f"{files[1]}: is not the key of {files[0]}, expected the two that were made together")
         return cls(certificate, key)
 
     def issue(self, folder: Path, name: str, hosts: Sequence[str], now: datetime, days: int) -> None:

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import ipaddress
 import json
 import re
 from pathlib import Path
 from typing import cast
 
+from tailor.runtime.bus.rights.credentials import AUTHORITY
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_json
 from tailor.schemas.services import ROLES, Role
 
 ROUTER = "router"  # the key of the gateway itself
 FILE = "roles.json"
+FRESH = "roles.new"  # while it is written
+AUTHORITY_KEY = "authority-key.pem"  # stays on the machine where keys are made
 REVOKED = "revoked"  # in the place of a role: rights go by the name, so a name never serves a second key
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
+_LABEL = r"[A-Za-z0-9_]([A-Za-z0-9_-]{0,61}[A-Za-z0-9_])?"
+_HOST = re.compile(rf"(\*\.)?{_LABEL}(\.{_LABEL})*")
 
 
 def check_name(name: str) -> str:
@@ -25,7 +31,23 @@ def check_name(name: str) -> str:
     """
     if not _NAME.fullmatch(name):
         raise UsageError(f"name {name!r}: expected letters, digits, '_', '.' or '-', at most 63")
+    if name in (FILE, FRESH, AUTHORITY, AUTHORITY_KEY):
+        raise UsageError(f"name {name!r}: a file in the folder of the keys has it, expected another one")
     return name
+
+
+def check_host(host: str) -> str:
+    """The host itself.
+
+    Raises:
+      UsageError: It is neither an address nor a name, so no client would accept a certificate with it.
+    """
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        if not _HOST.fullmatch(host) or len(host) > 253:
+            raise UsageError(f"--host {host!r}: expected a name or an address, such as robot.local") from None
+    return host
 
 
 def registered_roles(keys: str) -> dict[str, Role]:
@@ -50,6 +72,8 @@ def check_unused(keys: str, name: str) -> None:
 def _table(keys: str) -> dict[str, str]:
     """All names ever registered, with their roles or REVOKED."""
     path = Path(keys) / FILE
+    if Path(keys).is_file():
+        raise UsageError(f"{keys}: is a file, expected a folder of keys")
     if not path.exists():
         return {}
     table = read_json(path, "the file that `tailor keys new` writes")
@@ -61,6 +85,6 @@ def _table(keys: str) -> dict[str, str]:
 def write_role(keys: str, name: str, role: str) -> None:
     """Register a role, or REVOKED, for a name."""
     path = Path(keys) / FILE
-    fresh = path.with_suffix(".new")
+    fresh = path.with_name(FRESH)
     fresh.write_text(json.dumps({**_table(keys), name: role}, indent=2, sort_keys=True) + "\n")
     fresh.replace(path)

@@ -16,7 +16,15 @@ from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
 from tailor.schemas.errors import UsageError
 from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import KEYS
-from tailor.tools.keys.registry import REVOKED, ROUTER, check_name, check_unused, registered_roles, write_role
+from tailor.tools.keys.registry import (
+    REVOKED,
+    ROUTER,
+    check_host,
+    check_name,
+    check_unused,
+    registered_roles,
+    write_role,
+)
 
 DAYS = 825  # two years and a quarter, as many clients accept at most
 SESSION = "session.json5"
@@ -45,6 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if done."""
+    _check_flags(arguments)
     roles = registered_roles(arguments.keys)
     if arguments.action == "list":
         lines = "\n".join(f"{name}: {role}" for name, role in sorted(roles.items()))
@@ -56,6 +65,20 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _check_flags(arguments: argparse.Namespace) -> None:
+    """Raise UsageError for what only another action takes: it would be ignored."""
+    action = arguments.action
+    given = {
+        "--role": arguments.role,
+        "--host": arguments.host,
+        "--for": arguments.endpoint,
+        "--days": arguments.days != DAYS,
+        "NAME": action == "list" and arguments.name,
+    }
+    if action != "new" and (wrong := [flag for flag, value in given.items() if value]):
+        raise UsageError(f"{', '.join(wrong)}: not of `tailor keys {action}`")
+
+
 def _new(arguments: argparse.Namespace) -> None:
     from tailor.tools.keys.authority import Authority, utc_now
 
@@ -64,6 +87,8 @@ def _new(arguments: argparse.Namespace) -> None:
         raise UsageError(f"--role: expected one for every name, but none for '{ROUTER}'")
     if arguments.endpoint:
         check_endpoint(arguments.endpoint)
+    for host in arguments.host:
+        check_host(host)
     if not 0 < arguments.days < 10_000:
         raise UsageError(f"--days is {arguments.days}, expected 1 to 9999")
     check_unused(arguments.keys, name)

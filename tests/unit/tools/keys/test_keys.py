@@ -119,3 +119,69 @@ def test_json_for_scripts(tmp_path, capsys):
     assert json.loads(capsys.readouterr().out) == {"driving": "driver"}
     assert main(["keys", "revoke", "driving", "--keys", keys, "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == {"revoked": "driving"}
+
+
+@pytest.mark.parametrize("name", ["roles.json", "roles.new", "authority.pem", AUTHORITY_KEY])
+def test_a_name_takes_no_place_of_a_file(tmp_path, capsys, name):
+    assert main(["keys", "new", name, "--role", "people", "--keys", str(tmp_path / "keys")]) == 2
+    assert f"name '{name}': a file in the folder of the keys has it" in capsys.readouterr().err
+    assert not (tmp_path / "keys").exists()
+
+
+@pytest.mark.parametrize("host", ["", "a b", "robot..local", "http://robot", "10.0.0.0/8", "röbot", "-x", "x" * 64])
+def test_a_host_that_no_client_could_reach_is_refused(tmp_path, capsys, host):
+    assert main(["keys", "new", "router", f"--host={host}", "--keys", str(tmp_path / "keys")]) == 2
+    assert capsys.readouterr().err.startswith(f"tailor keys: --host {host!r}: expected a name or an address")
+    assert not (tmp_path / "keys").exists()
+
+
+@pytest.mark.parametrize("host", ["robot", "robot.local", "robot_2.local", "*.robot.local", "10.0.0.5", "fe80::1"])
+def test_a_host_may_be_a_name_or_an_address(tmp_path, host):
+    assert main(["keys", "new", "router", "--host", host, "--keys", str(tmp_path)]) == 0
+
+
+@pytest.mark.parametrize("name", ["authority.pem", AUTHORITY_KEY])
+def test_without_its_authority_no_key_is_made_and_no_second_authority(keys, capsys, name):
+    """The documentation has people keep the authority's key elsewhere; a new one would part new keys from old ones."""
+    moved = (keys / name).rename(keys / "elsewhere")
+    before = {path: path.read_bytes() for path in keys.iterdir() if path.is_file()}
+    assert main(["keys", "new", "viewing", "--role", "people", "--keys", str(keys)]) == 2
+    assert f"{keys / name}: is missing" in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in keys.iterdir() if path.is_file()} == before
+    moved.rename(keys / name)
+    assert main(["keys", "new", "viewing", "--role", "people", "--keys", str(keys)]) == 0
+
+
+@pytest.mark.parametrize("name", ["authority.pem", AUTHORITY_KEY])
+def test_a_damaged_authority_is_named_in_one_line(keys, tmp_path, capsys, name):
+    good = (keys / name).read_bytes()
+    (keys / name).write_text("junk")
+    assert main(["keys", "new", "viewing", "--role", "people", "--keys", str(keys)]) == 2
+    assert "cannot be read as PEM" in capsys.readouterr().err
+    Authority.of(tmp_path / "other", NOW, 30)
+    (keys / name).write_bytes((tmp_path / "other" / name).read_bytes())
+    assert main(["keys", "new", "viewing", "--role", "people", "--keys", str(keys)]) == 2
+    assert "expected the two that were made together" in capsys.readouterr().err
+    (keys / name).write_bytes(good)
+    assert not (keys / "viewing").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "wrong"),
+    [
+        (["list", "driving"], "NAME: not of `tailor keys list`"),
+        (["list", "--role", "people"], "--role: not of"),
+        (["revoke", "driving", "--host", "robot", "--days", "3"], "--host, --days: not of `tailor keys revoke`"),
+    ],
+)
+def test_a_flag_of_another_action_is_not_ignored(keys, capsys, words, wrong):
+    write_role(str(keys), "driving", "driver")
+    assert main(["keys", *words, "--keys", str(keys)]) == 2
+    assert wrong in capsys.readouterr().err
+    assert registered_roles(str(keys)) == {"driving": "driver"}
+
+
+def test_a_file_is_no_folder_of_keys(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["keys", "list", "--keys", str(tmp_path / "file")]) == 2
+    assert "is a file, expected a folder of keys" in capsys.readouterr().err
