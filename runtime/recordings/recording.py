@@ -17,7 +17,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
-_LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
+LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ def open_recording(path: str | Path) -> Recording:
 
 
 def _recorded(record: Any, key: str, name: str, sender: str) -> Recorded:
-    publish_ns = min(record.publish_time, _LATEST_NS)
+    publish_ns = min(record.publish_time, LATEST_NS)
     return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data)
 
 

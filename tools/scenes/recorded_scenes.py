@@ -12,7 +12,7 @@ from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.new_file import new_file
-from tailor.runtime.recordings.recording import Recorded, Recording, open_recording
+from tailor.runtime.recordings.recording import LATEST_NS, Recorded, Recording, open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import FrameTransforms, LogLine, Message, SceneShapes
@@ -60,7 +60,7 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
         for topic, each in made:
             key = key_of(topic, feed.robot)
             added[key] += 1
-            origin = pack(Origin(added[key], recorded.log_ns, SENDER))
+            origin = pack(Origin(added[key], min(recorded.log_ns, LATEST_NS), SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
             _add(writer, raw, recorded.log_ns)
         if writer.is_full and not writer.flush():
