@@ -18,6 +18,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.profiles import PROFILES
 from tailor.schemas.services import Role
 from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.given_options import given_options
 
 
 def configure_bus(parser: argparse.ArgumentParser) -> None:
@@ -32,6 +33,13 @@ def configure_bus(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--ros-domain", metavar="N", type=int, help="ROS_DOMAIN_ID of rmw_zenoh's keys (default 0)")
     parser.add_argument("--config", metavar="FILE", default="", help="deployment file (TOML)")
+
+
+def refuse_bus_flags(arguments: argparse.Namespace) -> None:
+    """Raise UsageError if a flag of `configure_bus` was given to a command that connects with --live alone."""
+    names = {f"--{name.replace('_', '-')}": name for name in ("connect", "key", "profile", "ros_domain", "config")}
+    if given := given_options(configure_bus, arguments, names):
+        raise UsageError(f"{', '.join(given)}: expected with --live, which alone connects to a bus")
 
 
 def bus_settings(arguments: argparse.Namespace) -> BusSettings:

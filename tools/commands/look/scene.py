@@ -22,7 +22,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
-from tailor.tools.cli.endpoint import configure_bus, configure_sender, sender_of
+from tailor.tools.cli.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
 from tailor.tools.cli.output_files import check_output
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
@@ -60,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError("--sender is the id under which --live publishes, expected it with --live")
     if arguments.output is not None and arguments.live:
         raise UsageError("--live takes no --output: it publishes on the bus, where `tailor record` records it")
+    if not arguments.live:
+        refuse_bus_flags(arguments)
     if arguments.layout is not None:
         return _layout(arguments)
     return _live(arguments) if arguments.live else _write(arguments)

@@ -11,7 +11,7 @@ from rich.console import Console
 from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus
+from tailor.tools.cli.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.cli.output_files import check_output
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
@@ -56,6 +56,9 @@ def run(arguments: argparse.Namespace) -> int:
     if not 0 <= arguments.port < 65536:
         raise UsageError(f"--port is {arguments.port}, expected 0 to 65535")
     if not arguments.live:
+        if arguments.port != PORT:
+            raise UsageError("--port is that of the live page, expected it with --live")
+        refuse_bus_flags(arguments)
         return _write(arguments)
     if arguments.output is not None:
         raise UsageError("--live takes no --output: it serves the page; record the run, and view the recording")

@@ -171,6 +171,10 @@ def test_view_refuses_contradictory_arguments(words) -> None:
         (view, ["--live", "-o", "a.html"], "--live takes no --output"),
         (scene, ["--live", "-o", "a.mcap"], "--live takes no --output"),
         (scene, ["a.mcap", "--sender", "ab" * 16], "expected it with --live"),
+        (scene, ["--layout", "arm", "--profile", "both"], "--profile: expected with --live"),
+        (scene, ["a.mcap", "--connect", "tcp/127.0.0.1:1"], "--connect: expected with --live"),
+        (view, ["a.mcap", "--key", "k", "--ros-domain", "3"], "--key, --ros-domain: expected with --live"),
+        (view, ["a.mcap", "--port", "80"], "--port is that of the live page, expected it with --live"),
     ],
 )
 def test_what_a_live_page_or_scene_would_ignore_is_refused(command, words, fault) -> None:
