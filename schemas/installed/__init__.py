@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import traceback
 from collections.abc import Iterable
 from importlib import import_module, resources
 from importlib.resources.abc import Traversable
@@ -79,6 +80,14 @@ def part(spec: DomainSpec, field: str) -> Any:
         return getattr(loaded, attribute) if attribute else loaded
     except (ImportError, AttributeError, SyntaxError) as error:
         raise UsageError(f"domain {spec.name}: {field} = '{written}': {error}") from error
+    except (Exception, SystemExit) as error:  # code of a package, which hinders only those who name it
+        raise UsageError(f"domain {spec.name}: {field} = '{written}': {_raised(error)}") from error
+
+
+def _raised(error: BaseException) -> str:
+    """What a package raised while it was imported, and the line that raised it."""
+    line = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({Path(line.filename).name}, line {line.lineno})"
 
 
 def file(spec: DomainSpec, field: str) -> Traversable:
@@ -89,6 +98,10 @@ def file(spec: DomainSpec, field: str) -> Traversable:
     """
     written: str = getattr(spec, field)
     package, _, path = written.rpartition(":")
+    if not (package or spec.package):
+        raise UsageError(
+            f"domain {spec.name}: {field} = '{written}': its spec lies in a module of no package, expected PACKAGE:PATH"
+        )
     try:
         return resources.files(package or spec.package).joinpath(path)
     except ImportError as error:

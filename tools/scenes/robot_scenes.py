@@ -13,6 +13,7 @@ from tailor.schemas.installed import part, spec_of
 from tailor.schemas.messages.scenes import Shape
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
+from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.tools.scenes import planar_convention
 
@@ -64,8 +65,16 @@ class RobotScenes:
             self._quantities = {name: {p.name: p.quantity for p in action.parameters} for name, action in actions}
             self.has_odometry = "odom" in loaded.sensors
             self.robot, self._names = spec.robot, tuple(_bare(name) for name in loaded.belief_names)
-            self._view = part(spec, "scene") if spec.scene else planar_convention
+            self._view = self._declared(spec)
         self.seen_from: str = getattr(self._view, "VIEW", "above")
+
+    def _declared(self, spec: DomainSpec) -> Any:
+        """The package's view; the convention if it has none, or one that cannot be imported."""
+        try:
+            return part(spec, "scene") if spec.scene else planar_convention
+        except UsageError as error:
+            self.fault = str(error)
+            return planar_convention
 
     def note(self, message: m.Contexts) -> None:
         """Draw the objects that actions take into account in the coming believed scenes, if the package draws them."""

@@ -20,6 +20,7 @@ GOOD = DomainSpec("courier", "pedelec", "courier_robot.domain:make", draw="couri
 TYPO = DomainSpec("courier", "pedelec", "courier_robot.typo:make", draw="courier_robot.domain:draw")
 RIVAL = DomainSpec("rival", "pedelec", "courier_robot.domain:make", draw="courier_robot.domain:draw")
 BAD = DomainSpec("Bad", "", "no module", generator="a:b", draw="a:b")
+RAISES = DomainSpec("courier", "pedelec", "courier_robot.broken:make", draw="courier_robot.ending:draw")
 NO_SPEC = 7
 """
 
@@ -90,6 +91,22 @@ def test_a_part_that_is_no_python_is_refused_with_its_file_and_line(installs):
     installs(courier=":TYPO")
     with pytest.raises(UsageError, match=r"domain = 'courier_robot\.typo:make': invalid syntax \(typo\.py, line 1\)"):
         installed.part(installed.spec_of("courier"), "domain")
+
+
+def test_a_part_that_raises_or_ends_the_process_is_refused_with_its_line(installs):
+    installs(courier=":RAISES")
+    spec = installed.spec_of("courier")
+    with pytest.raises(UsageError, match=r": ZeroDivisionError: division by zero \(broken\.py, line 1\)"):
+        installed.part(spec, "domain")
+    with pytest.raises(UsageError, match=r": SystemExit: no camera \(ending\.py, line 1\)"):
+        installed.part(spec, "draw")
+
+
+def test_a_spec_in_a_module_of_no_package_has_no_files_beside_it():
+    with pytest.raises(UsageError, match=r"driver = 'driver\.toml': its spec lies in a module of no package"):
+        installed.file(GOOD, "driver")
+    elsewhere = replace(GOOD, driver="tailor.simnodes:agilo/driver.toml")
+    assert "agilo" in installed.file(elsewhere, "driver").read_text(encoding="utf-8")
 
 
 def test_all_faults_of_a_spec_stand_in_one_line_with_file_and_field(installs):

@@ -8,11 +8,13 @@ import pytest
 from tailor.robots import arm_scene
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages.soccer import BallTruth, Opponent, OpponentsTruth, SoccerGroundTruth
 from tailor.schemas.packages.pose3 import Pose3, on_plane
 from tailor.schemas.packages.scene import MAP, Scene, frame, line, on_map, pose_of, sphere
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.powercube.body import PowerCubeBody
+from tailor.tools.scenes import robot_scenes
 from tailor.tools.scenes.robot_scenes import RobotScenes
 from tailor.tools.scenes.scene_feed import MAX_POINTS, MAX_SHAPES, SceneFeed, bounded
 from tests.support import synthetic_run
@@ -177,6 +179,16 @@ def test_a_package_that_fails_to_draw_is_reported_and_stops_nothing(monkeypatch)
     feed = soccer_feed()
     assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}
     assert feed.fault == "of_belief: KeyError: 'wings'"
+
+
+def test_a_package_whose_scene_cannot_be_imported_is_drawn_by_convention(monkeypatch):
+    def broken(spec, field):
+        raise UsageError(f"domain {spec.name}: {field}: NameError")
+
+    monkeypatch.setattr(robot_scenes, "part", broken)
+    scenes = RobotScenes("soccer")
+    assert scenes.fault == "domain soccer: scene: NameError"
+    assert scenes.of_belief(BELIEF) is not None
 
 
 def test_scenes_of_a_robot_without_one_are_drawn_by_convention():
