@@ -88,9 +88,14 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
         writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         writer.start(profile="ros2", library="tailor")
         _copy_records(source, _Copy(writer), keep, copied)
-        writer.add_metadata("copy", {"of": source.name, "damage": copied.damage.text(), **note})
+        writer.add_metadata("copy", {"of": utf8_name(source), "damage": copied.damage.text(), **note})
         writer.finish()
     return copied
+
+
+def utf8_name(path: Path) -> str:
+    """Name of a file; "?" stands for bytes that are no UTF-8, which metadata cannot hold."""
+    return path.name.encode(errors="replace").decode()
 
 
 def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) -> None:

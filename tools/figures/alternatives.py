@@ -37,7 +37,7 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
             axis = figure.add_subplot(len(rows), columns, place, **shape)
             _draw(axis, free, seconds, colour)
             head = f"{title}\n{free.variable.quantity} at {free.variable.label}\n" if column == 0 else "\n\n"
-            axis.set_title(f"{head}{name}", fontsize="small")
+            axis.set_title(f"{head}{name}", fontsize="small", parse_math=False)
     figure.supxlabel(LEGEND, fontsize="small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=120)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -12,6 +13,7 @@ from tailor.tools.recordings.comparison import ComparedRun
 COLOURS = ("#1f77b4", "#d62728")
 
 
+@rc_context({"text.parse_math": False})  # names of recordings and actions are no formulas
 def draw_comparison(a: ComparedRun, b: ComparedRun, path: Path) -> None:
     """Draw into a PNG; its folder is made."""
     axes_count = max(a.commands.shape[1], b.commands.shape[1]) - 1

@@ -53,7 +53,7 @@ class MovingPath:
             patch.set_visible(place is not None)
             if place is not None:
                 patch.set_xy(list(zip(*corners(outline, place), strict=True)))
-        self._axis.set_title(f"{self.track.title}: {_words(self.track, now, since_s)}")
+        self._axis.set_title(f"{self.track.title}: {_words(self.track, now, since_s)}", parse_math=False)
 
 
 def _words(track: Track, now: TrackPoint, since_s: float) -> str:

@@ -62,7 +62,7 @@ def draw_path(axis: Any, track: Track) -> None:
         names.append(points[0].name)
     _draw_objects(axis, track)
     draw_goals(axis, track)
-    axis.set_title(f"{track.title}: {track.actual_s:.1f} s")
+    axis.set_title(f"{track.title}: {track.actual_s:.1f} s", parse_math=False)
     _draw_legend(axis)
 
 

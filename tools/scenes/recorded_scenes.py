@@ -8,6 +8,7 @@ from pathlib import Path
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_named, encoding_of
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.recordings.copying import utf8_name
 from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
@@ -41,7 +42,7 @@ def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport
         try:
             _write(writer, recording, feed, added)
             if text := recording.damage.text():
-                writer.add_metadata("copy", {"of": source.name, "damage": text})
+                writer.add_metadata("copy", {"of": utf8_name(source), "damage": text})
         finally:
             whole = writer.close()
         if not whole:

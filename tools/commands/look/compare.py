@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import re
+from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from rich.table import Table
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.comparison import ComparedRun, chosen, command_differences, compared_run
 
@@ -40,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot:
         from tailor.tools.figures.comparison_plot import draw_comparison
 
-        draw_comparison(a, b, arguments.plot)
+        draw_comparison(replace(a, name=plain(a.name)), replace(b, name=plain(b.name)), arguments.plot)
     return 0 if comparison["equal"] else 1
 
 
@@ -116,8 +118,8 @@ def _distinct(texts: list[str]) -> list[str]:
 
 def _side_by_side(title: str, a: ComparedRun, b: ComparedRun, left: list[str], right: list[str]) -> Table:
     table = Table(title=title, title_justify="left", box=None, show_lines=False)
-    table.add_column(a.name, ratio=1)
-    table.add_column(b.name, ratio=1)
+    table.add_column(plain(a.name), ratio=1)
+    table.add_column(plain(b.name), ratio=1)
     for row in zip_longest(left, right, fillvalue=""):
-        table.add_row(*row)
+        table.add_row(*map(plain, row))
     return table

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.plain_text import plain
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     from tailor.tools.figures.recorded_track import recorded_track
 
     check_output("--output", arguments.output, (".png", *SUFFIXES))
-    tracks = [recorded_track(path.stem, path) for path in arguments.recording]
+    tracks = [recorded_track(plain(path.stem), path) for path in arguments.recording]
     if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
         raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
     draw = move_paths if arguments.output.suffix.lower() in SUFFIXES else draw_paths

@@ -13,6 +13,7 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.page import page
@@ -79,7 +80,8 @@ def _write(arguments: argparse.Namespace) -> int:
     check_output("--output", output, (".html", ".htm"))
     with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
         runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}
-        text = side_by_side(output.stem, "", runs) if others else page(first.name, runs[first.name])
+        [title, *_] = runs
+        text = side_by_side(plain(output.stem), "", runs) if others else page(title, runs[title])
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
         output.write_text(text, encoding="utf-8")
@@ -90,9 +92,9 @@ def _write(arguments: argparse.Namespace) -> int:
 
 
 def _titles(recordings: list[Path]) -> dict[str, Path]:
-    """Recordings by name; by path only where two have one name, for a page is passed on and folders are not."""
+    """Recordings by printable name; by path only where two have one: a page is passed on, and folders are not."""
     names = Counter(path.name for path in recordings)
-    return {path.name if names[path.name] == 1 else str(path): path for path in recordings}
+    return {plain(path.name if names[path.name] == 1 else str(path)): path for path in recordings}
 
 
 def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -16,7 +18,7 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
-from tailor.tools.commands.look import picture, scene, view, why
+from tailor.tools.commands.look import compare, cut, picture, scene, view, why
 from tests.support import synthetic_run
 
 SENDERS = {"exec/": "ab" * 16}
@@ -205,3 +207,19 @@ def test_why_names_the_part_that_cannot_be_loaded(recording) -> None:
 def test_why_refuses_a_picture_of_another_kind_before_it_reads(recording, tmp_path) -> None:
     with pytest.raises(UsageError, match=r"\.png or \.html"):
         run(why, tmp_path / "missing.mcap", "-o", "why.gif")
+
+
+def test_a_recording_of_any_name_is_shown_drawn_compared_and_copied(recording, tmp_path, capsys) -> None:
+    odd = tmp_path / os.fsdecode(b"b\xff$\\frac$.mcap")  # no UTF-8, and no formula either
+    shutil.copy(recording, odd)
+    page, drawn, copied = tmp_path / "odd.html", tmp_path / "odd.png", tmp_path / "cut.mcap"
+    assert run(view, str(odd), "--no-models", "-o", str(page)) == 0
+    assert "<title>b\\udcff$\\frac$.mcap" in page.read_text(encoding="utf-8")
+    assert run(picture, str(odd), "-o", str(drawn)) == 0
+    assert run(cut, str(odd), "-o", str(copied)) == 0
+    assert dict(open_recording(copied).metadata())["copy"]["of"] == "b?$\\frac$.mcap"
+    named = tmp_path / "\x1b[31m.mcap"
+    shutil.copy(recording, named)
+    capsys.readouterr()
+    assert run(compare, str(odd), str(named), "--plot", str(tmp_path / "compared.png")) == 0
+    assert "\x1b" not in capsys.readouterr().out
