@@ -109,16 +109,23 @@ def run_folder(endpoint: str) -> RunFolder:
 
 
 def _base() -> Path:
-    if VARIABLE in os.environ:
+    return _named() or Path(tempfile.gettempdir()) / f"tailor-{os.getuid()}"
+
+
+def _named() -> Path | None:
+    """The folder of all runs that the environment names; the XDG specification ignores a path that is not absolute.
+
+    A relative one would be another folder, with other passwords, for a command that is started elsewhere.
+    """
+    if os.environ.get(VARIABLE):
         return Path(os.environ[VARIABLE])
-    if "XDG_RUNTIME_DIR" in os.environ:
-        return Path(os.environ["XDG_RUNTIME_DIR"]) / "tailor"
-    return Path(tempfile.gettempdir()) / f"tailor-{os.getuid()}"
+    session = Path(os.environ.get("XDG_RUNTIME_DIR", ""))
+    return session / "tailor" if session.is_absolute() else None
 
 
 def _is_named() -> bool:
     """Whether the environment names the folder of all runs; else it lies where every user may make it first."""
-    return VARIABLE in os.environ or "XDG_RUNTIME_DIR" in os.environ
+    return _named() is not None
 
 
 def is_private(path: Path) -> bool:

@@ -221,6 +221,16 @@ def test_a_router_in_a_folder_that_others_may_write_is_not_ours(monkeypatch, whi
         assert not folder.running()
 
 
+@pytest.mark.parametrize("session", ["", "runtime"])
+def test_a_session_folder_that_is_not_absolute_counts_as_none(monkeypatch, tmp_path, session):
+    """The folder would be below the current one: an e-stop from elsewhere would find no bus."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", session)
+    monkeypatch.setenv("TAILOR_RUN_DIR", "")
+    monkeypatch.setattr(module.tempfile, "gettempdir", lambda: "/elsewhere")
+    assert str(run_folder(ENDPOINT).path).startswith(f"/elsewhere/tailor-{os.getuid()}/")
+
+
 def test_a_link_to_a_folder_is_refused(base, tmp_path):
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir(mode=0o700)
