@@ -162,11 +162,11 @@ def _faults_of_driver(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     yield from (
         f"sensors: there is no topic '{sensor.topic}'" for sensor in declared.sensors if sensor.topic not in TOPICS
     )
-    yield from _faults_of_entries(table, {axis.name: axis.unit for axis in domain.axes})
+    yield from _faults_of_entries(table, {axis.name: axis.unit for axis in domain.axes if axis.unit})
 
 
 def _faults_of_entries(table: Mapping[str, Any], units: Mapping[str, str]) -> Iterator[str]:
-    """Keys of a driver's file that nobody reads, such as a misspelt one, and units that are not the domain's."""
+    """Keys of a driver's file that nobody reads, such as a misspelt one, and units that are not the domain's, where it has some."""
     commands = table.get("commands") or [table["command"]]
     axes = [axis for command in commands for axis in command["axes"]]
     entries: list[tuple[str, Mapping[str, Any], tuple[str, ...]]] = [

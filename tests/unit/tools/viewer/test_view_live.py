@@ -161,6 +161,7 @@ def test_a_page_of_another_site_takes_no_place_of_ours_but_may_link_to_us(site: 
 
 
 def test_a_connection_that_is_reset_prints_nothing(capfd) -> None:
+    others = set(threading.enumerate())  # of tests before
     with serving("page", EventBroadcast(), 0) as port:
         for request in (b"", b"GE", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"):
             connection = socket.create_connection(("127.0.0.1", port))
@@ -168,7 +169,8 @@ def test_a_connection_that_is_reset_prints_nothing(capfd) -> None:
             connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
             connection.close()  # with a reset
         assert get(port, "/") == 200
-        wait_until(lambda: not [thread for thread in threading.enumerate() if "process_request" in thread.name])
+        ours = set(threading.enumerate()) - others
+        wait_until(lambda: not [thread for thread in ours if "process_request" in thread.name and thread.is_alive()])
     assert capfd.readouterr().err == ""
 
 
