@@ -166,7 +166,7 @@ def _faults_of_driver(spec: DomainSpec, domain: Domain) -> Iterator[str]:
 
 
 def _faults_of_entries(table: Mapping[str, Any], units: Mapping[str, str]) -> Iterator[str]:
-    """Keys of a driver's file that nobody reads, such as a misspelt one, and units that are not the domain's, where it has some."""
+    """Keys of a driver's file that nobody reads, such as a misspelt one, and units that differ from the domain's."""
     commands = table.get("commands") or [table["command"]]
     axes = [axis for command in commands for axis in command["axes"]]
     entries: list[tuple[str, Mapping[str, Any], tuple[str, ...]]] = [
