@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from tailor.schemas.msg_definitions import element_type, field_types
 from tailor.schemas.numbers import MAX_FROM_ROBOT, MAX_NUMBER, check_array, check_numbers, check_variances
+from tailor.schemas.packages.msg_definitions import element_type, field_types
 from tailor.schemas.ros_time import header, stamp_ns
 from tailor.schemas.typesystem import ros_class, ros_type
 

@@ -12,7 +12,6 @@ from tailor.schemas import messages as m
 from tailor.schemas.packages.discovery import packages
 from tailor.schemas.packages.package_topics import PackageTopics, add_topics
 from tailor.schemas.packages.topic import Priority, Source, Topic
-from tailor.schemas.type_faults import faults_of_fields
 
 __all__ = ["STALE_S", "TOPICS", "Priority", "Source", "Topic", "is_rate", "key_of", "nominal_rates_hz", "reports"]
 
@@ -77,7 +76,7 @@ class TopicTable(Mapping[str, Topic]):
 
     @cached_property
     def _read(self) -> PackageTopics:
-        return add_topics(_SHIPPED, packages(), faults_of_fields)
+        return add_topics(_SHIPPED, packages())
 
 
 TOPICS = TopicTable()

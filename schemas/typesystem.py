@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 from tailor.schemas.messages import Message
-from tailor.schemas.msg_definitions import declarations, with_parts
+from tailor.schemas.packages.msg_definitions import declarations, with_parts
 from tailor.schemas.packages.ros_names import ros_type
 from tailor.schemas.topics import TOPICS
 

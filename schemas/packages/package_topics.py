@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
 from importlib import import_module, resources
 from typing import Any
@@ -18,11 +18,11 @@ from tailor.schemas.packages.msg_reader import read_messages
 from tailor.schemas.packages.ros_names import PACKAGE, ros_type
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.packages.topic import Topic
+from tailor.schemas.packages.type_faults import faults_of_fields
 
 SOURCES = ("driver", "executive", "simulator")
 PRIORITIES = ("real_time", "interactive_high", "data")
 KEY_START = "{robot}/"
-TypeCheck = Callable[[Any, Mapping[str, type]], Iterable[str]]  # faults of a type, by the types known by ROS name
 KEY = re.compile(r"\{robot\}(/[\w.~-]+)+", re.ASCII)  # zenoh opens no bus whose access rules name another key
 MAX_BYTES = 1 << 30
 
@@ -35,8 +35,8 @@ class PackageTopics:
     faults: Mapping[str, tuple[str, ...]]
 
 
-def add_topics(known: Mapping[str, Topic], packages: Sequence[Package], check: TypeCheck) -> PackageTopics:
-    """Add the topics of packages whose types pass the check, those of one package all or none."""
+def add_topics(known: Mapping[str, Topic], packages: Sequence[Package]) -> PackageTopics:
+    """Add the topics of packages, those of one package all or none."""
     topics, faults = dict(known), dict[str, tuple[str, ...]]()
     for package in packages:
         if package.spec is None or package.faults or not package.spec.topics:
@@ -52,8 +52,7 @@ def add_topics(known: Mapping[str, Topic], packages: Sequence[Package], check: T
             wrong: tuple[str, ...] = (f"topics = '{package.spec.topics}': {type(error).__name__}: {error}",)
         else:
             wrong = tuple(
-                f"topics = '{package.spec.topics}': {fault}"
-                for fault in _faults(added, topics, package.spec.robot, check)
+                f"topics = '{package.spec.topics}': {fault}" for fault in _faults(added, topics, package.spec.robot)
             )
         if wrong:
             faults[package.name] = wrong
@@ -92,7 +91,7 @@ def _load(written: str) -> Any:
     return getattr(import_module(module), attribute)
 
 
-def _faults(added: Any, known: Mapping[str, Topic], robot: str, check: TypeCheck) -> Iterator[str]:
+def _faults(added: Any, known: Mapping[str, Topic], robot: str) -> Iterator[str]:
     if not isinstance(added, Mapping):
         yield f"is a {type(added).__name__}, expected a table of Topics by name"
         return
@@ -111,8 +110,7 @@ def _faults(added: Any, known: Mapping[str, Topic], robot: str, check: TypeCheck
             yield f"'{name}' is a topic already, expected a name of its own, such as '{robot}_{name}'"
         if topic.key in keys:
             yield f"'{name}' has the key {topic.key} of '{keys[topic.key]}'"
-        faults = (*_faults_of_row(topic), *_faults_of_type(topic.type, types, check))
-        yield from (f"'{name}': {fault}" for fault in faults)
+        yield from (f"'{name}': {fault}" for fault in (*_faults_of_row(topic), *_faults_of_type(topic.type, types)))
         keys[topic.key] = name
 
 
@@ -144,7 +142,7 @@ def _is_finite(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _faults_of_type(kind: Any, types: Mapping[str, type], check: TypeCheck) -> Iterator[str]:
+def _faults_of_type(kind: Any, types: Mapping[str, type]) -> Iterator[str]:
     if not (isinstance(kind, type) and issubclass(kind, Message) and is_dataclass(kind)):
         yield f"type is {kind!r}, expected a frozen dataclass derived from Message"
         return
@@ -159,4 +157,4 @@ def _faults_of_type(kind: Any, types: Mapping[str, type], check: TypeCheck) -> I
     elif name.startswith(f"{PACKAGE}/") and not kind.__module__.startswith("tailor."):
         yield f"type {kind.__name__} has the ROS_PACKAGE {PACKAGE}, expected one of its own"
     elif name not in types:
-        yield from check(kind, types)
+        yield from faults_of_fields(kind, types)

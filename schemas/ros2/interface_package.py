@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tailor import __version__
-from tailor.schemas.msg_definitions import declarations
+from tailor.schemas.packages.msg_definitions import declarations
 from tailor.schemas.packages.ros_names import PACKAGE, ros_type
 from tailor.schemas.ros2 import service
 from tailor.schemas.typesystem import own_types

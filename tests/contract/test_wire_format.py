@@ -10,7 +10,7 @@ import pytest
 
 from tailor.schemas import messages as m
 from tailor.schemas.codec import decode, encode
-from tailor.schemas.msg_definitions import field_types
+from tailor.schemas.packages.msg_definitions import field_types
 from tailor.schemas.typesystem import definition, message_types, ros_type, type_hash, type_of, typestore
 from tests.support.filled import filled
 

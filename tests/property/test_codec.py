@@ -15,9 +15,9 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages.scenes import FrameTransforms, LogLine, SceneShapes
 from tailor.schemas.messages.soccer import BallPercept, OpponentPercept, OpponentPercepts
-from tailor.schemas.msg_definitions import field_types
 from tailor.schemas.numbers import MAX_FROM_ROBOT, MAX_NUMBER
 from tailor.schemas.own import example
+from tailor.schemas.packages.msg_definitions import field_types
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.ros_time import MAX_STAMP_NS
 from tailor.schemas.standard import pose_from_ros, pose_to_ros

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from tailor.schemas.messages import InstantiatedAction, Parameter, Subgoals
-from tailor.schemas.msg_definitions import declarations, with_parts
+from tailor.schemas.packages.msg_definitions import declarations, with_parts
 
 
 def test_nested_types_come_before_the_types_that_contain_them():

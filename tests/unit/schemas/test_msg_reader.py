@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tailor.schemas.msg_definitions import declarations
+from tailor.schemas.packages.msg_definitions import declarations
 from tailor.schemas.packages.msg_reader import read_messages
 from tailor.schemas.packages.ros_names import ros_type
 

@@ -11,7 +11,6 @@ from tailor.schemas.packages.package_topics import add_topics
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.packages.topic import Topic
 from tailor.schemas.topics import TOPICS
-from tailor.schemas.type_faults import faults_of_fields
 from tests.support.robots.robot_package import MESSAGES, SPEC, install, run_with
 
 USE = """
@@ -146,7 +145,7 @@ TYPES = {
 def added(table, monkeypatch):
     monkeypatch.setattr("tests.unit.schemas.test_package_topics.OFFERED", table, raising=False)
     spec = DomainSpec("courier", "pedelec", "m:make", draw="m:draw", topics=f"{__name__}:OFFERED")
-    return add_topics(TOPICS, [Package("courier", "m:SPEC", spec, ())], faults_of_fields)
+    return add_topics(TOPICS, [Package("courier", "m:SPEC", spec, ())])
 
 
 def test_good_topics_are_added(monkeypatch):

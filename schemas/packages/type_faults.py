@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from types import NoneType
 from typing import Any, get_args
 
-from tailor.schemas.msg_definitions import declarations, field_types, with_parts
+from tailor.schemas.packages.msg_definitions import declarations, field_types, with_parts
 from tailor.schemas.packages.ros_names import ros_type
 
 STAMP = "stamp_ns"  # stands for the header
