@@ -13,6 +13,12 @@ from tailor.schemas.errors import UsageError
 BESIDE_OBJECTS = "clearance"  # kind of models whose arguments are followed by those of an object
 
 
+def folder_of(card: Card, data: Path | None) -> Path:
+    """Folder of the data set of a model's action; `data` is as for `known_episodes`."""
+    folder: Path = (data or Path("data") / card["robot"]) / card["action"]
+    return folder
+
+
 def known_episodes(card: Card, data: Path | None) -> tuple[Episode, ...]:
     """Episodes with the arguments of a model; none if there is no data set, or one beside objects for other models.
 
@@ -23,7 +29,7 @@ def known_episodes(card: Card, data: Path | None) -> tuple[Episode, ...]:
     Raises:
       UsageError: The data set cannot be read, or is of another robot, action or arguments.
     """
-    folder = (data or Path("data") / card["robot"]) / card["action"]
+    folder = folder_of(card, data)
     if not (folder / MANIFEST).exists():
         return ()
     found = read_data_set(folder)

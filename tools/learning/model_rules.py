@@ -90,12 +90,12 @@ def _distilled(model: Model, features: NDArray[np.float32]) -> tuple[list[str], 
 
 def _arguments(card: Card, data: Path | None) -> tuple[Array, str]:
     """Arguments to compare on, and their origin in words."""
-    from tailor.tools.learning.known_episodes import known_episodes
+    from tailor.tools.learning.known_episodes import folder_of, known_episodes
 
     episodes = known_episodes(card, data)
     if episodes:
-        folder = (data or Path("data") / card["robot"]) / card["action"]
-        return np.stack([episode.ticks[0] for episode in episodes]), f"over the {len(episodes)} episodes in {folder}"
+        where = f"over the {len(episodes)} episodes in {folder_of(card, data)}"
+        return np.stack([episode.ticks[0] for episode in episodes]), where
     drawn = random_arguments(card, RANDOM_ARGUMENTS, np.random.default_rng(1))
     return drawn, f"over {RANDOM_ARGUMENTS} random arguments"
 
