@@ -2,31 +2,73 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
-from tailor.schemas.parsed_files import read_toml
+from tailor.schemas.parsed_files import read_toml, shown
 from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate, nominal_rates_hz
 from tailor.simnodes.driver import command_values
 from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_spec
 
 MIN_FRESH = 2  # messages of a sensor before it is stale, so that it may lose one
+COMMAND_KEYS = ("topic", "rate_hz", "timeout_s", "frame", "axes")
+AXIS_KEYS = ("name", "unit", "lower", "upper", "kept")
+SENSOR_KEYS = ("rate_hz", "frame")
 
 
-def driver_of(robot: str, file: str | None) -> DriverSpec:
-    """Specification of a driver: from `file`, or that of the simulated robot.
+def driver_of(domain: Domain, file: str | None) -> DriverSpec:
+    """Specification of the driver of a domain's robot: from `file`, or that of the simulated robot.
 
     Raises:
-      UsageError: The file is missing, or not a specification of a driver.
+      UsageError: The file is missing, not a specification of a driver, or that of another robot's.
     """
     if file is None:
-        return shipped_driver_spec(robot)
+        return shipped_driver_spec(domain.robot)
+    table = read_toml(file, "the specification of a driver (docs/robots/driver.md)")
     try:
-        return driver_spec(read_toml(file, "the specification of a driver (docs/robots/driver.md)"))
+        spec = driver_spec(table)
     except ValueError as error:
         raise UsageError(f"{file}: not the specification of a driver: {error} (docs/robots/driver.md)") from error
+    if faults := list(faults_of_table(table, domain)):
+        raise UsageError(f"{file}: {'; '.join(faults)} (docs/robots/driver.md)")
+    return spec
+
+
+def faults_of_table(table: Mapping[str, Any], domain: Domain) -> Iterator[str]:
+    """What a specification says that nobody reads, such as a misspelt key, or that is of another robot.
+
+    Args:
+      table: A specification that `driver_spec` accepts.
+      domain: Domain of the robot.
+    """
+    if table.get("robot", domain.robot) != domain.robot:
+        yield f"robot is {shown(table['robot'])}, expected '{domain.robot}'"
+    yield from (f"sensors: there is no topic '{name}'" for name in table.get("sensors", {}) if name not in TOPICS)
+    yield from _unknown_keys(table)
+    units = {axis.name: axis.unit for axis in domain.axes if axis.unit}
+    for axis in (axis for command in _commands(table) for axis in command["axes"]):
+        name, unit = axis["name"], axis.get("unit")
+        if unit is not None and unit != units.get(name, unit):
+            yield f"{name} has the unit {shown(unit)}, expected {units[name]} as the domain"
+
+
+def _unknown_keys(table: Mapping[str, Any]) -> Iterator[str]:
+    commands = _commands(table)
+    entries: list[tuple[str, Mapping[str, Any], tuple[str, ...]]] = [
+        *((command["topic"], command, COMMAND_KEYS) for command in commands),
+        *((axis["name"], axis, AXIS_KEYS) for command in commands for axis in command["axes"]),
+        *((f"sensors.{name}", sensor, SENSOR_KEYS) for name, sensor in table.get("sensors", {}).items()),
+    ]
+    for where, entry, known in entries:
+        if unknown := [key for key in entry if key not in known]:
+            yield f"{where}: unknown key '{', '.join(unknown)}', expected one of: {', '.join(known)}"
+
+
+def _commands(table: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    return table.get("commands") or [table["command"]]
 
 
 def check_driver(domain: Domain, driver: DriverSpec) -> None:

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.action import Action
@@ -18,15 +17,10 @@ from tailor.executive.refinement.assertion.asserted_subgoal import goal_indices,
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of
 from tailor.schemas.packages.spec import DomainSpec
-from tailor.schemas.parsed_files import shown
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
-from tailor.tools.launch.driver_check import mismatches_of
+from tailor.tools.launch.driver_check import faults_of_table, mismatches_of
 from tailor.tools.launch.scenario_check import faults_of_scenarios
-
-COMMAND_KEYS = ("topic", "rate_hz", "timeout_s", "frame", "axes")
-AXIS_KEYS = ("name", "unit", "lower", "upper", "kept")
-SENSOR_KEYS = ("rate_hz", "frame")
 
 
 def check_package(name: str) -> Domain:
@@ -157,27 +151,4 @@ def _faults_of_driver(spec: DomainSpec, domain: Domain) -> Iterator[str]:
         return
     yield from mismatches_of(domain, declared)
     table = tomllib.loads(file(spec, "driver").read_text(encoding="utf-8"))
-    if table.get("robot", spec.robot) != spec.robot:
-        yield f"robot is '{table['robot']}', expected '{spec.robot}' by the spec"
-    yield from (
-        f"sensors: there is no topic '{sensor.topic}'" for sensor in declared.sensors if sensor.topic not in TOPICS
-    )
-    yield from _faults_of_entries(table, {axis.name: axis.unit for axis in domain.axes if axis.unit})
-
-
-def _faults_of_entries(table: Mapping[str, Any], units: Mapping[str, str]) -> Iterator[str]:
-    """Keys of a driver's file that nobody reads, such as a misspelt one, and units that differ from the domain's."""
-    commands = table.get("commands") or [table["command"]]
-    axes = [axis for command in commands for axis in command["axes"]]
-    entries: list[tuple[str, Mapping[str, Any], tuple[str, ...]]] = [
-        *((command["topic"], command, COMMAND_KEYS) for command in commands),
-        *((axis["name"], axis, AXIS_KEYS) for axis in axes),
-        *((f"sensors.{name}", sensor, SENSOR_KEYS) for name, sensor in table.get("sensors", {}).items()),
-    ]
-    for where, entry, known in entries:
-        if unknown := [key for key in entry if key not in known]:
-            yield f"{where}: unknown key '{', '.join(unknown)}', expected one of: {', '.join(known)}"
-    for axis in axes:
-        name, unit = axis["name"], axis.get("unit")
-        if unit is not None and unit != units.get(name, unit):
-            yield f"{name} has the unit {shown(unit)}, expected {units[name]} as the domain"
+    yield from faults_of_table(table, domain)

@@ -16,6 +16,8 @@ from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
 
+SOCCER = domains.load("soccer")
+
 
 @pytest.mark.parametrize("name", domain_names())
 def test_every_domain_matches_the_driver_of_its_robot(name):
@@ -127,7 +129,7 @@ def test_a_file_that_specifies_no_driver_is_refused_in_one_line(tmp_path, text, 
     file = tmp_path / "driver.toml"
     file.write_bytes(text.encode("latin-1"))
     with pytest.raises(UsageError) as caught:
-        driver_of("agilo", str(file))
+        driver_of(SOCCER, str(file))
     assert expected in str(caught.value)
     assert "the specification of a driver" in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -135,7 +137,27 @@ def test_a_file_that_specifies_no_driver_is_refused_in_one_line(tmp_path, text, 
 
 def test_a_driver_is_specified_by_its_command_alone(tmp_path):
     (tmp_path / "driver.toml").write_text(COMMAND)
-    assert driver_of("agilo", str(tmp_path / "driver.toml")).axes == ("v",)
+    assert driver_of(SOCCER, str(tmp_path / "driver.toml")).axes == ("v",)
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "expected"),
+    [
+        ("rate_hz = 50", "rate = 50", "sensors.odom: unknown key 'rate', expected one of: rate_hz, frame"),
+        ("timeout_s = 0.3", "timeout_s = 0.3\ntimeout_ms = 100", "cmd_vel: unknown key 'timeout_ms', expected one of:"),
+        ('unit = "m/s"', 'unit = "km/h"', "v has the unit 'km/h', expected m/s as the domain"),
+        ('robot = "agilo"', 'robot = "hal"', "robot is 'hal', expected 'agilo'"),
+        ("ball =", "lidar =", "sensors: there is no topic 'lidar'"),
+    ],
+)
+def test_what_nobody_would_read_in_a_specification_is_refused(tmp_path, line, wrong, expected):
+    text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
+    assert line in text
+    (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
+    with pytest.raises(UsageError) as caught:
+        driver_of(SOCCER, str(tmp_path / "driver.toml"))
+    assert str(caught.value).startswith(f"{tmp_path / 'driver.toml'}: {expected}")
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.promise("P39")
@@ -155,4 +177,4 @@ def test_a_specification_that_would_disable_the_guard_is_refused(tmp_path, line,
     assert line in text
     (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
     with pytest.raises(UsageError, match=expected):
-        driver_of("agilo", str(tmp_path / "driver.toml"))
+        driver_of(SOCCER, str(tmp_path / "driver.toml"))

@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 if every clause was tried and kept and the robot moves as expected, else 1."""
     domain = domains.load(spec_of_robot(arguments.robot).name)
-    spec = driver_of(arguments.robot, arguments.driver)
+    spec = driver_of(domain, arguments.driver)
     check_driver(domain, spec)
     if not 0.0 < arguments.speed <= MAX_FRACTION:
         raise UsageError(f"--speed is {arguments.speed:g}, expected more than 0 and at most {MAX_FRACTION:g}")

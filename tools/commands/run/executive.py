@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     config = executive_config(arguments.domain, deployment)
     context = build_context(config, sender="")  # configuration errors are reported before the bus is opened
     check_models(context)
-    driver = driver_of(context.domain.robot, arguments.driver)
+    driver = driver_of(context.domain, arguments.driver)
     check_driver(context.domain, driver)
     context = replace(context, sensor_rates_hz=sensor_rates_hz(context.domain, driver))
     goal = _goal(context, arguments)

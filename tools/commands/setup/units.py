@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _config(arguments: argparse.Namespace) -> UnitsConfig:
     deployment = deployment_from(arguments)
     domain = build_context(executive_config(arguments.domain, deployment), sender="").domain
-    check_driver(domain, driver_of(domain.robot, arguments.driver))
+    check_driver(domain, driver_of(domain, arguments.driver))
     parts = _parts(arguments.parts, bool(arguments.record))
     if "driver" in parts and not arguments.driver_command and not spec_of_robot(domain.robot).body:
         raise UsageError(f"{domain.robot} has no simulated body, expected --driver-command with that of its hardware")
