@@ -27,6 +27,7 @@ from tailor.tools.keys.registry import (
 )
 
 DAYS = 825  # two years and a quarter, as many clients accept at most
+MAX_DAYS = 9999
 SESSION = "session.json5"
 
 
@@ -89,14 +90,17 @@ def _new(arguments: argparse.Namespace) -> None:
         check_endpoint(arguments.endpoint)
     for host in arguments.host:
         check_host(host)
-    if not 0 < arguments.days < 10_000:
-        raise UsageError(f"--days is {arguments.days}, expected 1 to 9999")
+    if not 0 < arguments.days <= MAX_DAYS:
+        raise UsageError(f"--days is {arguments.days}, expected 1 to {MAX_DAYS}")
     check_unused(arguments.keys, name)
     folder, now = keys / name, utc_now()
     if folder.exists():
         raise UsageError(f"{folder}: exists already, expected a new name")
     try:
-        Authority.of(keys, now, arguments.days).issue(folder, name, arguments.host, now, arguments.days)
+        authority = Authority.of(
+            keys, now, MAX_DAYS
+        )  # no key holds longer than what signed it, so --days is not for it
+        authority.issue(folder, name, arguments.host, now, arguments.days)
         if arguments.role:
             write_role(arguments.keys, name, arguments.role)
         if arguments.endpoint:

@@ -61,6 +61,14 @@ def test_a_key_is_valid_for_its_days_alone(keys):
         assert issued.not_valid_after_utc == NOW + timedelta(days=days)
 
 
+def test_a_key_for_a_few_days_does_not_shorten_the_authority_and_with_it_all_later_keys(tmp_path):
+    assert main(["keys", "new", "visitor", "--role", "observer", "--days", "3", "--keys", str(tmp_path)]) == 0
+    assert main(["keys", "new", "driving", "--role", "executive", "--keys", str(tmp_path)]) == 0
+    ends = [certificate(tmp_path / name).not_valid_after_utc for name in ("authority.pem", "driving/certificate.pem")]
+    assert ends[0] > ends[1] + timedelta(days=1000)
+    assert certificate(tmp_path / "visitor" / "certificate.pem").not_valid_after_utc < ends[1] - timedelta(days=800)
+
+
 def test_the_authority_is_made_once(keys):
     before = (keys / AUTHORITY_KEY).read_bytes()
     Authority.of(keys, NOW, 30).issue(keys / "viewing", "viewing", [], NOW, 10)
