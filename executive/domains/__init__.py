@@ -10,10 +10,11 @@ import numpy as np
 
 from tailor.executive.interfaces.domain import Domain, Scenario
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import file, part, spec_of
+from tailor.schemas.installed import file, instance, part, spec_of
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.parsed_files import toml_table
 
+LAST = 99.0  # order of a scenario that declares none
 SCENARIO_STREAM = 0  # random stream of a run's seed; noise and search use others
 
 
@@ -23,7 +24,7 @@ def load(name: str) -> Domain:
     Raises:
       UsageError: Unknown name; the message lists the known ones. Or the package cannot be used.
     """
-    made: Domain = part(spec_of(name), "domain")()
+    made: Domain = instance(spec_of(name), "domain")
     return made
 
 
@@ -37,8 +38,7 @@ def scenarios(name: str) -> list[str]:
     if spec.generator:
         generated: list[str] = part(spec, "generator").scenarios()
         return generated
-    declared = ((_declaration(spec, file), file) for file in _scenario_files(spec))
-    return [file for _, file in sorted(declared, key=lambda pair: (pair[0].get("order", 99), pair[1]))]
+    return sorted(_scenario_files(spec), key=lambda scenario: (_order(_declaration(spec, scenario)), scenario))
 
 
 def load_scenario(name: str, scenario: str, rng: np.random.Generator) -> tuple[Scenario, dict[str, float]]:
@@ -78,6 +78,12 @@ def declaration(spec: DomainSpec, scenario: str) -> Mapping[str, Any]:
         return toml_table(_folder(spec).joinpath(f"{scenario}.toml").read_text(encoding="utf-8"))
     except UnicodeDecodeError:
         raise ValueError("not UTF-8") from None
+
+
+def _order(declared: Mapping[str, Any]) -> float:
+    """Place of a scenario among the others; the check of its package reports an order that is no number."""
+    order = declared.get("order", LAST)
+    return order if isinstance(order, int | float) else LAST
 
 
 def _folder(spec: DomainSpec) -> Traversable:

@@ -84,8 +84,23 @@ def part(spec: DomainSpec, field: str) -> Any:
         raise UsageError(f"domain {spec.name}: {field} = '{written}': {_raised(error)}") from error
 
 
+def instance(spec: DomainSpec, field: str) -> Any:
+    """What an object that a spec names returns when it is called without arguments, e.g. the domain of "domain".
+
+    Raises:
+      UsageError: As `part`; or the package's code raises an error.
+    """
+    make = part(spec, field)
+    try:
+        return make()
+    except UsageError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise UsageError(f"domain {spec.name}: {field} = '{getattr(spec, field)}': {_raised(error)}") from error
+
+
 def _raised(error: BaseException) -> str:
-    """What a package raised while it was imported, and the line that raised it."""
+    """What a package raised, and the line that raised it."""
     line = traceback.extract_tb(error.__traceback__)[-1]
     return f"{type(error).__name__}: {error} ({Path(line.filename).name}, line {line.lineno})"
 

@@ -6,6 +6,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
+from tailor.executive import domains
 from tailor.schemas import installed
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages import discovery
@@ -20,6 +21,7 @@ GOOD = DomainSpec("courier", "pedelec", "courier_robot.domain:make", draw="couri
 TYPO = DomainSpec("courier", "pedelec", "courier_robot.typo:make", draw="courier_robot.domain:draw")
 RIVAL = DomainSpec("rival", "pedelec", "courier_robot.domain:make", draw="courier_robot.domain:draw")
 BAD = DomainSpec("Bad", "", "no module", generator="a:b", draw="a:b")
+FAILS = DomainSpec("courier", "pedelec", "courier_robot.domain:fail", draw="courier_robot.domain:draw")
 RAISES = DomainSpec("courier", "pedelec", "courier_robot.broken:make", draw="courier_robot.ending:draw")
 NO_SPEC = 7
 """
@@ -34,7 +36,7 @@ def courier(tmp_path, monkeypatch):
     (folder / "broken.py").write_text("1 / 0\n")
     (folder / "ending.py").write_text("raise SystemExit('no camera')\n")
     (folder / "typo.py").write_text("def make(:\n")
-    (folder / "domain.py").write_text("def make():\n    return 'made'\n")
+    (folder / "domain.py").write_text("def make():\n    return 'made'\n\n\ndef fail():\n    return {}['wheels']\n")
     (folder / "driver.toml").write_text("robot = 'pedelec'\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     yield lambda **points: discovery.read_packages(
@@ -100,6 +102,21 @@ def test_a_part_that_raises_or_ends_the_process_is_refused_with_its_line(install
         installed.part(spec, "domain")
     with pytest.raises(UsageError, match=r": SystemExit: no camera \(ending\.py, line 1\)"):
         installed.part(spec, "draw")
+
+
+def test_a_domain_that_cannot_be_made_is_refused_with_its_line(installs):
+    installs(courier=":FAILS")
+    with pytest.raises(UsageError, match=r"courier_robot\.domain:fail': KeyError: 'wheels' \(domain\.py, line 6\)"):
+        domains.load("courier")
+
+
+def test_scenarios_are_listed_although_the_order_of_one_is_no_number(installs, tmp_path):
+    installs(courier=":GOOD")
+    folder = tmp_path / "courier_robot" / "scenarios"
+    folder.mkdir()
+    for name, order in (("tour", "'last'"), ("delivery", "2"), ("charge", "1.5")):
+        (folder / f"{name}.toml").write_text(f"order = {order}\n")
+    assert domains.scenarios("courier") == ["charge", "delivery", "tour"]
 
 
 def test_a_spec_in_a_module_of_no_package_has_no_files_beside_it():
