@@ -69,6 +69,10 @@ class Settings:
             raise UsageError("planner settings: expected at least one flaw order")
         for order in self.flaw_orders:
             parse_flaw_order(order.text)
+            if order.limit is not None and order.limit < 0:
+                raise UsageError(
+                    f"planner settings: expected a limit of flaw orders of at least 0, found {order.limit}"
+                )
         check_rankings(self.rankings)
         if not 0 <= self.weight <= MAX_WEIGHT:
             raise UsageError(f"planner settings: expected a weight in [0, {MAX_WEIGHT:g}], found {self.weight}")

@@ -248,6 +248,8 @@ def test_unknown_rankings_and_bad_settings_are_told():
     for name in ("node_limit", "step_limit", "ground_limit"):
         with pytest.raises(UsageError, match=name):
             Settings(**{name: -1})
+    with pytest.raises(UsageError, match="limit of flaw orders of at least 0, found -1"):
+        Settings(flaw_orders=(FlawOrder("LCFR", -1),))
 
 
 def test_action_cost_by_duration_prefers_the_quick_way():
