@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.ranges import Ranges
 from tailor.executive.refinement.solvers.chain_structure import Columns
+from tailor.executive.refinement.solvers.random_scales import random_scales
 
 FAR_SHARE = 0.25  # of the candidates are drawn from the whole range, so that every basin is sampled eventually
 DECADES = 3.5  # near candidates step by 10**-3.5 to all of the range
@@ -91,7 +92,7 @@ class Candidates:
             if len(block):
                 origin[:, block] = values[(number * len(values)).astype(np.intp)]
         each = count, len(kept)
-        scale = 10.0 ** -(DECADES * rng.random(each))
+        scale = random_scales(DECADES, rng, each)
         axis = (rng.random(each) * self._sizes).astype(np.intp)
         along_axis = rng.random(each) < 0.5
         step = scale[:, of] * rng.standard_normal(origin.shape)

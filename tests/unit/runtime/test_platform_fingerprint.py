@@ -19,8 +19,6 @@ VARYING = {"arctan2", "arctan", "arcsin", "arccos", "tan", "exp", "expm1", "log"
 KNOWN = {
     "executive/actions/cubic.py",  # powers of Python's floats: libm's, which do not vary
     "executive/planning/plans/vhpop_reader.py",  # likewise
-    "executive/refinement/solvers/chain_candidates.py",  # solvers that only longer horizons or a setting ask for
-    "executive/refinement/solvers/genetic.py",
     "models/features/intervals.py",  # proofs of the gap only: margins far wider than a last bit
 }
 

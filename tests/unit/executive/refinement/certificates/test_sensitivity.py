@@ -3,7 +3,7 @@
 import numpy as np
 
 from tailor.executive.refinement.certificates.sensitivity import PROBE_STEP, PROBES, sensitivity
-from tests.unit.executive.refinement.test_chain_solver import Legs
+from tests.unit.executive.refinement.solvers.test_chain_solver import Legs
 
 
 def test_it_is_the_mean_change_of_the_whole_cost():
