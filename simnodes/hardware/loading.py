@@ -7,6 +7,7 @@ import math
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from traceback import extract_tb
 from types import ModuleType
 
 from tailor.schemas.errors import UsageError
@@ -26,20 +27,30 @@ def load_hardware(named: str) -> Hardware:
         raise UsageError(f"{named}: expected FILE.toml, package.module:Class or FILE.py:Class")
     try:
         found = getattr(_module(where), name)
-    except (ImportError, AttributeError, OSError, SyntaxError, ValueError) as error:
-        raise UsageError(f"{named}: {error}, expected package.module:Class or FILE.py:Class") from error
+    except Exception as error:  # whatever a person's module does when it is loaded
+        raise UsageError(f"{named}: {_cause(error)}, expected package.module:Class or FILE.py:Class") from error
     if not (inspect.isclass(found) and issubclass(found, Hardware)):
         raise UsageError(f"{named}: is no subclass of tailor.simnodes.hardware.interface.Hardware")
     try:
         hardware = found()
-    except TypeError as error:
-        raise UsageError(f"{named}: {error}, expected a class that is made without arguments") from error
+    except Exception as error:
+        raise UsageError(f"{named}: {_cause(error)}, expected a class that is made without arguments") from error
     if not hardware.robot:
         raise UsageError(f"{named}: robot is empty, expected the name of the robot")
     for name in POSITIVE:
-        if not (math.isfinite(value := getattr(hardware, name)) and value > 0.0):
-            raise UsageError(f"{named}: {name} is {value}, expected a finite number above 0")
+        value = getattr(hardware, name)
+        if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
+            raise UsageError(f"{named}: {name} is {value!r}, expected a finite number above 0")
     return hardware
+
+
+def _cause(error: Exception) -> str:
+    """One line; where an error is from, if it names no cause by itself, such as `division by zero`."""
+    text = " ".join(str(error).split())
+    if text and isinstance(error, ImportError | AttributeError | OSError | SyntaxError | ValueError):
+        return text
+    *_, frame = extract_tb(error.__traceback__)
+    return f"{type(error).__name__}: {text} ({Path(frame.filename).name}, line {frame.lineno})"
 
 
 def _module(where: str) -> ModuleType:

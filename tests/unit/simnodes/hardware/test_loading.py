@@ -16,6 +16,14 @@ WRONG = {
     ":Rover": "expected FILE",
     "tailor.simnodes.hardware.interface:Hardware": "robot is empty",
     f"{__name__}:NeverWriting": r"write_hz is 0\.0, expected a finite number above 0",
+    f"{__name__}:WritingFast": r"write_hz is 'fast', expected a finite number above 0",
+    f"{__name__}:Unplugged": r"RuntimeError: no board, on no port \(test_loading\.py, line \d+\), expected a class",
+    ".relative:Rover": "expected package.module:Class or FILE.py:Class",
+}
+BROKEN = {
+    "raise KeyError": "KeyError",
+    "Rover = 1 / 0": r"ZeroDivisionError: division by zero \(broken\.py, line 1\)",
+    "def": "invalid syntax",
 }
 
 
@@ -23,6 +31,19 @@ class NeverWriting(Faulty):
     """Its writer would divide by zero."""
 
     write_hz = 0.0
+
+
+class WritingFast(Faulty):
+    """A rate of another type."""
+
+    write_hz = "fast"
+
+
+class Unplugged(Faulty):
+    """It looks for its board when it is made."""
+
+    def __init__(self):
+        raise RuntimeError("no board,\non no port")
 
 
 def test_a_class_is_found_in_a_file_and_in_a_module():
@@ -34,4 +55,13 @@ def test_a_class_is_found_in_a_file_and_in_a_module():
 def test_what_is_no_hardware_is_refused_in_one_line(named):
     with pytest.raises(UsageError, match=WRONG[named]) as refused:
         load_hardware(named)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("source", BROKEN)
+def test_a_module_that_cannot_be_loaded_is_refused_in_one_line(source, tmp_path):
+    file = tmp_path / "broken.py"
+    file.write_text(source)
+    with pytest.raises(UsageError, match=rf"broken\.py:Rover: .*{BROKEN[source]}.*, expected") as refused:
+        load_hardware(f"{file}:Rover")
     assert "\n" not in str(refused.value)
