@@ -15,7 +15,7 @@ from rich.text import Text
 
 from tailor.runtime.aside import Aside, aside
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, PlanReport, ProcessStates, Subgoals, TickReport
-from tailor.schemas.reason_text import reason_text, result_text
+from tailor.schemas.reason_text import reason_text, result_text, without_numbers
 from tailor.tools.cli.plain_text import plain
 
 
@@ -43,8 +43,9 @@ class _Lines:
 
     def show(self, message: Message) -> None:
         line = plain(_summary(message))
-        if line and line != self._last:
-            self._last = line
+        event = without_numbers(line) if isinstance(message, ExecStatus) else line  # a measured value changes each tick
+        if line and event != self._last:
+            self._last = event
             self.report(line)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 
 from tailor.runtime.aside import FINISH_S
 from tailor.runtime.realtime import take_ordinary
+from tailor.schemas.reason_text import without_numbers
 from tailor.tools.cli.plain_text import plain
 
 PERIOD_S = 0.2
@@ -15,7 +16,7 @@ PERIOD_S = 0.2
 
 @contextlib.contextmanager
 def state_lines(text: Callable[[], str], wanted: bool = True) -> Iterator[None]:
-    """Print a text whenever it has changed, from a thread of its own.
+    """Print a text whenever it has changed in more than its numbers, from a thread of its own.
 
     Args:
       text: Returns the present state in one line; empty: nothing to print. It is called in the thread.
@@ -39,8 +40,8 @@ def _print(text: Callable[[], str], ended: threading.Event) -> None:
     while True:
         over = ended.wait(PERIOD_S)
         line = text()
-        if line and line != last:
-            last = line
+        if line and without_numbers(line) != last:
+            last = without_numbers(line)
             print(plain(line), flush=True)
         if over:
             return

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tailor.schemas import messages as m
-from tailor.schemas.reason_text import reason_text, result_text
+from tailor.schemas.reason_text import reason_text, result_text, without_numbers
 
 TROUBLE = ("FAULT", "HOLDING", "stopped", "estopped")
 
 
 class RunLog:
-    """Log of one run; a line only where something changes."""
+    """Log of one run; a line only where something changes, and not for numbers alone."""
 
     def __init__(self) -> None:
         self._last: dict[str, str] = {}  # by what it is about
@@ -42,8 +42,9 @@ class RunLog:
             yield from self._changed(key, message.stamp_ns, mode, _level(message.mode))
 
     def _changed(self, name: str, stamp_ns: int, text: str, level: int) -> Iterator[m.LogLine]:
-        if self._last.get(name, "") != text:
-            self._last[name] = text
+        event = without_numbers(text)
+        if self._last.get(name, "") != event:
+            self._last[name] = event
             if text:
                 yield m.LogLine(stamp_ns, level, name, text)
 

@@ -23,3 +23,13 @@ def test_names_from_the_bus_are_shown_literally(terminal, capsys, monkeypatch):
         shown.show(ProcessStates(0, (ProcessState("sim", 1, "running", 1, 0.0, ODD, ""),)))
         shown.show(status)
     assert SHOWN in capsys.readouterr().out
+
+
+def test_a_reason_whose_numbers_alone_change_is_one_line(capsys):
+    """Ten lines a second of odometry that nobody believes hide whatever else happens."""
+    holding = replace(example(ExecStatus), mode="HOLDING", reason="input stale", action="", result="")
+    with screen() as shown:
+        for detail in ("odom has v at 3.2", "odom has v at -2.1", "odom has v at 5.9e+06", "odom has omega at 9.1"):
+            shown.show(replace(holding, detail=detail))
+    lines = ["  HOLDING input stale: odom has v at 3.2", "  HOLDING input stale: odom has omega at 9.1"]
+    assert capsys.readouterr().out.splitlines() == lines

@@ -15,7 +15,7 @@ from tailor.tools.launch.state_lines import state_lines
 
 
 def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
-    states = iter(["", "waiting", "waiting", "running"])
+    states = iter(["", "waiting 1.5 s", "waiting 1.7 s", "running"])
     current = [""]
 
     def text():
@@ -24,7 +24,7 @@ def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
 
     with state_lines(text):
         time.sleep(0.9)
-    assert capsys.readouterr().out == "waiting\nrunning\n"
+    assert capsys.readouterr().out == "waiting 1.5 s\nrunning\n"
 
 
 def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
