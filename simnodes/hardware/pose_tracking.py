@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from tailor.schemas.messages import Odometry, PoseEstimate
 
 JUMP_M, JUMP_MPS = 0.5, 10.0  # a longer step of the odometry than both together is none that a robot has made
+JUMP_RAD, JUMP_RADPS = 0.5, 10.0  # nor is a larger turn
+ANEW_NS = 500_000_000  # a base that restarts is silent for longer, or its clock is another one
+ZERO, AWAY = 0.02, 0.1  # m or rad: odometry at zero that was farther away before
 APART_NS = 500_000_000  # between a pose of the localiser and the odometry of its time, if the robot has moved since
 STOOD_M, STOOD_RAD = 0.02, 0.02  # odometry of a standing robot may creep by so much
 HISTORY = 256  # odometry that is kept for a late localiser: 5 s at 50 Hz
@@ -82,8 +85,16 @@ class PoseTracker:
         if not self._history:
             return ""
         stamp_ns, last, *_ = self._history[-1]
-        step_m, passed_s = math.dist(last[:2], (odometry.x, odometry.y)), 1e-9 * max(0, odometry.stamp_ns - stamp_ns)
-        return f"jumped by {step_m:.1f} m" if step_m > JUMP_M + JUMP_MPS * passed_s else ""
+        step_m = math.dist(last[:2], (odometry.x, odometry.y))
+        turn_rad = abs(math.remainder(odometry.phi - last[2], math.tau))
+        passed_ns = odometry.stamp_ns - stamp_ns
+        is_zero = max(abs(odometry.x), abs(odometry.y), abs(odometry.phi)) < ZERO
+        if is_zero and max(step_m, turn_rad) > AWAY and not 0 <= passed_ns <= ANEW_NS:
+            return "began anew at zero"
+        passed_s = 1e-9 * max(0, passed_ns)
+        if step_m > JUMP_M + JUMP_MPS * passed_s:
+            return f"jumped by {step_m:.1f} m"
+        return f"jumped by {turn_rad:.1f} rad" if turn_rad > JUMP_RAD + JUMP_RADPS * passed_s else ""
 
     def correct(self, seen: PoseEstimate) -> str:
         """Take a pose of the localiser, valid at its stamp; without odometry it is ignored.

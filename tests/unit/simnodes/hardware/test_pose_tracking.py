@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tailor.schemas.messages import Odometry, PoseEstimate
@@ -27,6 +27,11 @@ def near(pose, expected):
     )
 
 
+def away_from_zero(pose):
+    assume(max(map(abs, pose)) > 0.1)  # where odometry begins anew
+    return pose
+
+
 @given(POSES, POSES)
 def test_inverse_undoes_a_pose(pose, other):
     x, y, phi = composed(inverse(pose), composed(pose, other))
@@ -38,7 +43,7 @@ def test_a_start_is_carried_on_by_odometry(start, first, step):
     tracker = PoseTracker(start, Drift())
     tracker.move(odometry(1, *first))
     near(tracker.pose(), start)
-    tracker.move(odometry(2, *composed(first, step)))
+    tracker.move(odometry(2, *away_from_zero(composed(first, step))))
     near(tracker.pose(), composed(start, step))
 
 
@@ -46,7 +51,7 @@ def test_a_start_is_carried_on_by_odometry(start, first, step):
 def test_a_late_pose_of_the_localiser_holds_for_its_stamp(place, first, step):
     tracker = PoseTracker(None, Drift())
     tracker.move(odometry(1, *first))
-    tracker.move(odometry(2, *composed(first, step)))
+    tracker.move(odometry(2, *away_from_zero(composed(first, step))))
     assert tracker.pose() is None
     tracker.correct(seen(1.1, *place))
     near(tracker.pose(), composed(place, step))
@@ -80,6 +85,31 @@ def test_odometry_that_jumps_makes_the_pose_unknown_until_the_localiser_speaks(s
     assert (tracker.pose() is None) is jumps, "nor is it at its start again"
     tracker.correct(seen(1.1 + passed_s, 3.0, 3.0, 1.0))
     near(tracker.pose(), (3.0, 3.0, 1.0))
+
+
+@pytest.mark.parametrize("pose", [(3.0, 1.0, 0.5), (0.2, 0.0, 0.0), (0.0, 0.0, 1.5)])
+@pytest.mark.parametrize("again_s", [2.5, 100.0, -90.0], ids=["soon", "late", "with another clock"])
+def test_odometry_that_begins_anew_after_a_silence_makes_the_pose_unknown(pose, again_s):
+    """A base takes seconds to restart: enough time for metres, if it had driven."""
+    tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
+    tracker.move(odometry(100.0, *pose))
+    assert tracker.move(odometry(100.0 + again_s, 0.001, 0.0, 0.002)) == "began anew at zero"
+    assert tracker.pose() is None
+
+
+def test_odometry_that_goes_on_after_a_silence_or_passes_zero_is_carried_on():
+    tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
+    for stamp_s, x in ((1.0, 0.0), (30.0, 0.0), (40.0, 2.0), (40.4, 0.0), (50.0, 0.05), (60.0, 0.0)):
+        assert tracker.move(odometry(stamp_s, x, 0.0, 0.0)) == ""
+    near(tracker.pose(), (1.0, 2.0, 0.0))
+
+
+def test_a_heading_that_jumps_makes_the_pose_unknown():
+    tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
+    tracker.move(odometry(1.0, 0.0, 0.0, 3.1))
+    assert tracker.move(odometry(1.02, 0.0, 0.0, -3.1)) == ""
+    assert tracker.move(odometry(1.04, 0.0, 0.0, -2.3)) == "jumped by 0.8 rad"
+    assert tracker.pose() is None
 
 
 def driven(stamped=True, seconds=10, mps=0.5):
