@@ -11,7 +11,8 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
 from tailor.runtime.processes.notify import SILENT, Notifier
-from tailor.schemas.codec import encode
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
@@ -114,19 +115,23 @@ class HardwareNode:
         for at_ns, readings in self.device.readings():
             wall = wall_ns() - (self._clock.now_ns() - at_ns)
             for name, message in readings.items():
-                fault = self._fault_of(name, message) or self._publish(name, message, wall)
+                fault = self._fault_of(name, message) or self._publish(name, message, at_ns, wall)
                 if fault:
                     self.device.fail(fault)
                     return
-                self._watch.heard(name, at_ns)
 
-    def _publish(self, name: str, message: Any, wall: int) -> str:
+    def _publish(self, name: str, message: Any, at_ns: int, wall: int) -> str:
         """Publish a measurement; a fault if its fields hold what no message can, e.g. None where a number belongs."""
         try:
             payload = encode(message if message.stamp_ns else replace(message, stamp_ns=wall))
         except Exception as error:
             return f"read: {name} cannot be encoded: {type(error).__name__}: {error}"
         self._publishers[name].publish_encoded(payload)
+        taken = decode(TOPIC_TABLE[name], payload)
+        if isinstance(taken, Rejected):  # by every receiver: to them the sensor is silent
+            self._watch.refused(name, taken.reason)
+        else:
+            self._watch.heard(name, at_ns)
         return ""
 
     def _fault_of(self, name: str, message: Message) -> str:

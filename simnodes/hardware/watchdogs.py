@@ -53,25 +53,31 @@ class SensorWatch:
     def __init__(self, limits_s: Mapping[str, float]) -> None:
         self._limits_s = dict(limits_s)
         self._heard_ns: dict[str, int] = {}
+        self._refused: dict[str, str] = {}
         self._since_ns = 0
 
     def restart(self, now_ns: int) -> None:
         """The hardware has been opened."""
-        self._heard_ns, self._since_ns = {}, now_ns
+        self._heard_ns, self._refused, self._since_ns = {}, {}, now_ns
 
     def heard(self, topic: str, at_ns: int) -> None:
         """A measurement came."""
         self._heard_ns[topic] = at_ns
+        self._refused.pop(topic, None)
+
+    def refused(self, topic: str, reason: str) -> None:
+        """A measurement came that no receiver takes, e.g. since it is not finite; it counts as none."""
+        self._refused[topic] = reason
 
     def missing(self) -> str:
         """Watched sensors that have not been heard yet, as text."""
         return ", ".join(name for name in self._limits_s if name not in self._heard_ns)
 
     def fault(self, now_ns: int) -> str:
-        """A sensor that is silent for too long; empty if there is none."""
+        """A sensor that is silent, or refused, for too long; empty if there is none."""
         for name, limit_s in self._limits_s.items():
             since_ns = self._heard_ns.get(name, self._since_ns)
             allowed_s = limit_s if name in self._heard_ns else max(FIRST_S, limit_s)
             if now_ns - since_ns > allowed_s * 1e9:
-                return f"{name}: silent for {allowed_s:g} s"
+                return f"{name}: {self._refused.get(name, 'silent')} for {allowed_s:g} s"
         return ""

@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import math
 import threading
 
 import pytest
@@ -219,6 +220,28 @@ def test_after_a_fault_nothing_from_before_it_is_written_even_if_the_loop_hangs(
     wait_until(lambda: len(hardware.written) > 3, "set-points", 5)
     assert set(hardware.written) == {(0.0, 0.0)}
     assert device.end()
+
+
+@pytest.mark.parametrize(("x", "reason"), [(math.nan, "not finite"), (1e300, "number too large")])
+def test_a_sensor_whose_measurements_every_receiver_refuses_stops_the_robot(robot, x, reason):
+    """They kept it fresh: the driver stayed armed and reported nothing, while the executive had no odometry."""
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = {"odom": Odometry(0, x, 0.0, 0.0, 0.0, 0.0)}
+    stopped_for(driven, f"odom: {reason} for 0.5 s")
+    driven.hardware.odometry = {}
+    driven.drive()
+
+
+def test_one_measurement_that_is_refused_stops_nobody(robot):
+    driven = robot()
+    driven.drive()
+    for x in (math.nan, 0.0):
+        driven.hardware.odometry = {"odom": Odometry(0, x, 0.0, 0.0, 0.0, 0.0)}
+        calls = driven.hardware.calls["read"]
+        wait_until(lambda calls=calls: driven.hardware.calls["read"] > calls + 2, "measurements", 5)
+    threading.Event().wait(0.6)
+    assert driven.state().mode == "armed"
 
 
 @pytest.mark.parametrize(
