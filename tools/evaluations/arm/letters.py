@@ -56,11 +56,13 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if refined letters are faster than all others that were written.
 
     Raises:
-      UsageError: A letter that the font lacks, or the same one twice.
+      UsageError: A letter that the font lacks, the same one twice, or only one.
     """
     seeds, known, chosen = seeds_of("arm", arguments), sorted(font()), arguments.letters
     if len(set(chosen)) < len(chosen) or not set(chosen) <= set(known):
         raise UsageError(f"--letters is '{chosen}', expected some of {''.join(known)}, each once")
+    if len(chosen) == 1:
+        raise UsageError(f"--letters is '{chosen}', expected at least two letters: intervals are over them")
     modes = (*LEARNED, PERFECT_GREEDY, *(() if arguments.no_oracle else ORACLES))
     keys = [key for key in keys_of(seeds, arguments.seeds) if key[0] in (chosen or known)]
     found = measure_letters(modes, keys, arguments.zoo, arguments.jobs)
@@ -137,11 +139,12 @@ def _against(baseline: str, name: str, found: Found, keys: Sequence[Key]) -> Com
 
 
 def _add_share(rows: Sequence[dict[str, Any]]) -> None:
-    """How much of what could be gained over the model's greedy choice is gained, by mean durations."""
+    """How much of what could be gained over the model's greedy choice is gained, by mean durations; nan: nothing."""
     mean = {row["mode"]: row["mean_s"] for row in rows}
     ceiling_s = min(mean[ORACLES[-1].name], mean[ORACLES[1].name])
+    most_s = mean["greedy"] - ceiling_s
     for row in rows:
-        row["share_of_gain_pct"] = 100 * (mean["greedy"] - row["mean_s"]) / (mean["greedy"] - ceiling_s)
+        row["share_of_gain_pct"] = 100 * (mean["greedy"] - row["mean_s"]) / most_s if most_s else float("nan")
 
 
 def _mean(some: Sequence[Figures], field: str) -> float:

@@ -1,5 +1,6 @@
 """The letters' evaluation: its oracle knows what a reach takes, and its rows are over letters."""
 
+import math
 from collections import Counter
 from dataclasses import replace
 
@@ -12,7 +13,7 @@ from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.letters import font
 from tailor.simnodes.powercube.body import PowerCubeBody
 from tailor.tools.evaluations.arm import letters
-from tailor.tools.evaluations.arm.letter_figures import Figures
+from tailor.tools.evaluations.arm.letter_figures import ORACLES, Figures
 from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import Costs
@@ -121,3 +122,14 @@ def test_some_letters_are_written_from_the_starts_that_they_have_among_all(monke
     assert main([*command, "--letters", "BÄ"]) == 2
     assert main([*command, "--letters", "BB"]) == 2
     assert "--letters is 'BB', expected some of ABC" in capsys.readouterr().err
+    asked.clear()
+    assert main([*command, "--letters", "B"]) == 2
+    assert "--letters is 'B', expected at least two letters" in capsys.readouterr().err
+    assert not asked, "nothing is written for an interval that does not exist"
+
+
+def test_where_nothing_could_be_gained_there_is_no_share_of_it():
+    """Durations are whole periods: a few letters take the same in every mode."""
+    some = found(n_letters=2, n_seeds=1)
+    equal = {mode: dict.fromkeys(some["greedy"], figures(2.0)) for mode in (*some, *(each.name for each in ORACLES))}
+    assert all(math.isnan(row["share_of_gain_pct"]) for row in letters.rows_of(equal))
