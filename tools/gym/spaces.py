@@ -61,10 +61,10 @@ def checked_limit(limit_s: float) -> float:
     """A time limit of an episode, s.
 
     Raises:
-      UsageError: It is no number above 0; infinity is one, and truncates nothing.
+      UsageError: It is no finite number above 0: a failure costs the rest of it.
     """
-    if not limit_s > 0:
-        raise UsageError(f"limit_s is {limit_s!r}, expected seconds above 0")
+    if not 0 < limit_s < math.inf:
+        raise UsageError(f"limit_s is {limit_s!r}, expected seconds above 0, finite: a failure costs what is left")
     return limit_s
 
 

@@ -167,6 +167,7 @@ def test_a_scenario_s_seed_can_be_chosen():
         ("tailor/arm-v0", {"zoo": "/nowhere"}, "no action models"),
         ("tailor-action/arm-v0", {"action": "fly"}, "no action 'fly'"),
         ("tailor-action/arm-v0", {"limit_s": float("nan")}, "limit_s is nan, expected seconds above 0"),
+        ("tailor-action/arm-v0", {"limit_s": float("inf")}, "limit_s is inf, expected seconds above 0, finite"),
         ("tailor/arm-v0", {"limit_s": 0}, "limit_s is 0, expected seconds above 0"),
     ],
 )
