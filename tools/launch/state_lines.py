@@ -42,6 +42,7 @@ def _print(text: Callable[[], str], ended: threading.Event) -> None:
         line = text()
         if line and without_numbers(line) != last:
             last = without_numbers(line)
-            print(plain(line), flush=True)
+            with contextlib.suppress(OSError):  # nobody reads any more, or a disk is full: the loop beside goes on
+                print(plain(line), flush=True)
         if over:
             return

@@ -1,5 +1,7 @@
 """What `tailor executive` and `tailor sim` print when people start them by hand."""
 
+import sys
+import threading
 import time
 
 import pytest
@@ -12,6 +14,7 @@ from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.commands.run import executive, sim
 from tailor.tools.launch.state_lines import state_lines
+from tests.support.patience import wait_until
 
 
 def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
@@ -25,6 +28,23 @@ def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
     with state_lines(text):
         time.sleep(0.9)
     assert capsys.readouterr().out == "waiting 1.5 s\nrunning\n"
+
+
+def test_lines_that_nobody_can_take_end_nothing(monkeypatch, capsys):
+    """`tailor sim agilo | head -1`: a thread that died left a traceback and printed no later line."""
+    died, written, texts = [], [], iter(["waiting"])
+    monkeypatch.setattr(threading, "excepthook", died.append)
+    with monkeypatch.context() as closed, state_lines(lambda: next(texts, "running" if written else "")):
+        closed.setattr(sys.stdout, "write", lambda line: written.append(line) or _refuse())
+        wait_until(lambda: written, "a line", 5)
+        closed.undo()
+        time.sleep(0.5)
+    assert not died
+    assert capsys.readouterr().out == "running\n"
+
+
+def _refuse():
+    raise BrokenPipeError
 
 
 def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
