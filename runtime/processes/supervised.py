@@ -73,6 +73,12 @@ class Supervised:
             return State.WAITING
         return State.STARTING if self.heard_ns is None else State.RUNNING
 
+    @property
+    def missing(self) -> str:
+        """What a silent child owes, for people: one that is not ready may well be alive, e.g. wait for its hardware."""
+        ready = f"was not ready within {STARTUP_NS / 1e9:g} s"
+        return ready if self.heard_ns is None else "gave no sign of life"
+
     def begin(self, child: Child, now_ns: int) -> None:
         """The next start."""
         self.child, self.started_ns, self.starts = child, now_ns, self.starts + 1

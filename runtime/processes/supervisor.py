@@ -56,7 +56,7 @@ class Supervisor:
             if (code := process.child.exit_code()) is not None:
                 self._died(process, code, now_ns)
             elif process.is_silent(now_ns) and not process.killed:
-                self._report(f"{process.spec.name} gave no sign of life; killed")
+                self._report(f"{process.spec.name} {process.missing}; killed")
                 process.killed = True
                 process.child.kill(0.0)  # one that hangs in the kernel, e.g. on a dead disk, ends later or never
 

@@ -204,6 +204,7 @@ def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(sup
     assert (FakeChild.made[0].killed, supervisor.state("executive")) == (0, State.STARTING)
     supervisor.poll(STARTUP_NS + 1)
     assert FakeChild.made[0].killed
+    assert supervisor.reported == ["executive was not ready within 30 s; killed"]
 
 
 def test_a_child_that_is_stopping_has_time_for_it(supervisor):
