@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -70,6 +71,8 @@ def measure_letters(modes: Sequence[WritingMode], keys: Sequence[Key], zoo: str,
 
 def _figures(mode: WritingMode, key: Key, zoo: str) -> Figures:
     written, run = _written(mode, *key, zoo)
+    if not len(written.arrivals_s):  # it failed on its way to the first waypoint
+        return Figures(False, 0.0, math.nan, written.peak_current_a, math.nan, math.nan, math.nan)
     actual_s = np.diff(written.arrivals_s, prepend=0.0)
     return Figures(
         written.result == "achieved",

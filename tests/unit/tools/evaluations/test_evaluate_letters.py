@@ -12,13 +12,14 @@ from tailor.executive.domains.arm.action_library import REACH
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.letters import font
 from tailor.simnodes.powercube.body import PowerCubeBody
-from tailor.tools.evaluations.arm import letters
+from tailor.tools.evaluations.arm import letter_figures, letters
 from tailor.tools.evaluations.arm.letter_figures import ORACLES, Figures
 from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.main import main
+from tailor.tools.writing.writing_track import writing_track
 
 
 def test_the_oracle_predicts_what_the_controller_plans():
@@ -133,3 +134,14 @@ def test_where_nothing_could_be_gained_there_is_no_share_of_it():
     some = found(n_letters=2, n_seeds=1)
     equal = {mode: dict.fromkeys(some["greedy"], figures(2.0)) for mode in (*some, *(each.name for each in ORACLES))}
     assert all(math.isnan(row["share_of_gain_pct"]) for row in letters.rows_of(equal))
+
+
+def test_a_letter_without_any_waypoint_has_failed(monkeypatch):
+    """It ended the evaluation, and with it all letters that were written."""
+    nothing = writing_track("refined", "T", [])
+    monkeypatch.setattr(letter_figures, "_written", lambda *key: (nothing, None))
+    failed = letter_figures._figures(letter_figures.REFINED, ("T", 1), "")
+    assert (failed.achieved, failed.duration_s) == (False, 0.0)
+    some = found()
+    some["greedy"]["A", 0] = failed
+    assert {row["n"] for row in letters.rows_of(some)} == {17}
