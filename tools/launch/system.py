@@ -22,7 +22,7 @@ from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.launch.arming_advice import arming_advice
+from tailor.tools.launch.arming_advice import hardware_line
 from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.process_reports import ProcessReports
@@ -141,11 +141,10 @@ class _System:
 
     def _report_hardware(self, driver: DriverState) -> None:
         """What a real robot waits for, on change: a person arms it."""
-        line = reason_text(f"{self._robot} is {driver.mode}", reason_text(driver.reason, driver.detail))
+        line = hardware_line(self._robot, driver)
         if self._config.hardware and line != self._reported:
             self._reported = line
-            hint = "" if driver.mode == "armed" else f" ({arming_advice(self._robot, driver.mode)})"
-            self._screen.report(f"{line}{hint}")
+            self._screen.report(plain(line))
 
     def _take_result(self, status: ExecStatus) -> None:
         result = result_text(status.result, status.result_reason, status.result_detail)

@@ -13,6 +13,7 @@ from tailor.schemas.messages import DriverState
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.commands.run import executive, sim
+from tailor.tools.launch.arming_advice import hardware_line
 from tailor.tools.launch.state_lines import state_lines
 from tests.support.patience import wait_until
 
@@ -85,3 +86,17 @@ def test_a_simulator_that_waits_names_the_command_that_arms_it():
     assert sim.state_line(guard, "agilo") == "disarmed: just started; `tailor arm agilo` arms it for an executive"
     guard.arm(0, "a" * 32, 1)
     assert sim.state_line(guard, "agilo") == "armed: obeys aaaaaaaa"
+
+
+@pytest.mark.parametrize(
+    ("mode", "reason", "detail", "line"),
+    [
+        ("disarmed", "just started", "", "agilo is disarmed: just started (`tailor arm agilo` arms it)"),
+        ("disarmed", "just started", "not ready: opening", "agilo is disarmed: just started: not ready: opening"),
+        ("stopped", "driver fault", "no bus; not ready: x", "agilo is stopped: driver fault: no bus; not ready: x"),
+        ("estopped", "e-stop", "", "agilo is estopped: e-stop (`tailor arm agilo --reset` arms it)"),
+        ("armed", "", "", "agilo is armed"),
+    ],
+)
+def test_nobody_is_told_to_arm_hardware_that_would_refuse_it(mode, reason, detail, line):
+    assert hardware_line("agilo", DriverState(0, mode, reason, detail, 1, "", 0)) == line
