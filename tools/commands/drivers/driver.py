@@ -9,10 +9,11 @@ from __future__ import annotations
 import argparse
 import secrets
 import sys
+from collections.abc import Callable
 from functools import partial
 
 from tailor.runtime import realtime
-from tailor.runtime.aside import aside
+from tailor.runtime.aside import Aside, aside
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
@@ -23,6 +24,7 @@ from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
 from tailor.tools.cli.bus_end import BusEnd
 from tailor.tools.cli.endpoint import bus_settings, checked_sender, configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.launch.hardware import hardware_of
 
 
@@ -47,10 +49,6 @@ def run(arguments: argparse.Namespace) -> int:
     spec = shipped_driver_spec(hardware.robot)
     end = BusEnd(arguments, stop_on_signals())
     with aside() as terminal, open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
-
-        def report(line: str) -> None:  # the guard's loop never waits for a terminal
-            terminal.call(partial(print, f"{hardware.robot}: {line}", file=sys.stderr, flush=True))
-
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
@@ -62,8 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
             epoch=1 + secrets.randbelow(2**62),
             leave=leave,
             retry=RetryPolicy(attempts=arguments.attempts),
-            report=report,
+            report=reporter(hardware.robot, terminal),
         )
         code = 0 if node.run(lambda: end.reached(session), notifier) else 1
     end.check()
     return code
+
+
+def reporter(robot: str, terminal: Aside) -> Callable[[str], None]:
+    """Prints lines about a robot, with text from its device, beside the guard's loop: it never waits for a terminal."""
+    return lambda line: terminal.call(partial(print, plain(f"{robot}: {line}"), file=sys.stderr, flush=True))

@@ -2,7 +2,9 @@
 
 import pytest
 
+from tailor.runtime.aside import aside
 from tailor.schemas.errors import UsageError
+from tailor.tools.commands.drivers.driver import reporter
 from tailor.tools.launch.hardware import hardware_of
 
 ELSEWHERE = '[bus]\nconnect = "tcp/192.0.2.1:7447"\n'
@@ -40,3 +42,9 @@ def test_a_bus_that_can_never_be_opened_is_refused_at_once_and_not_tried_for_eve
     with pytest.raises(UsageError) as refused:
         hardware_of(str(file), "tcp/127.0.0.1:7447")
     assert str(refused.value).startswith(f"{file}: {fault}")
+
+
+def test_what_a_device_says_reaches_a_terminal_without_its_control_characters(capsys):
+    with aside() as terminal:
+        reporter("agilo", terminal)("not ready: read: OSError: unexpected \x1b[2J")
+    assert capsys.readouterr().err == "agilo: not ready: read: OSError: unexpected \\x1b[2J\n"
