@@ -21,7 +21,7 @@ SELF_ARM = "self_arm"  # requests of the executive; those of people come on anot
 TOPICS = ("arm_request", SELF_ARM, "estop")  # inputs of every driver besides its command
 SHOWN_DIGITS = 8  # of a sender id
 HELD_BY = "held by "  # in the detail of a driver's state: the dead man's switches that it hears
-NOT_READY = "not ready: "  # in the detail, before the reason why the hardware cannot be driven
+NOT_READY = "not ready"  # in the detail, with the reason why the hardware cannot be driven, unless it stands before
 ARM_REFUSED = "arm: "  # before the reason of a refused arming request, in a driver's state
 
 
@@ -133,8 +133,14 @@ class Driver:
 
     def _detail(self) -> str:
         held = ", ".join(shown(sender) for sender in self.held.senders)
-        unready = f"{NOT_READY}{self.unready}" if self.unready not in ("", self.guard.detail) else ""
-        return "; ".join(text for text in (self.guard.detail, unready, f"{HELD_BY}{held}" if held else "") if text)
+        parts = self.guard.detail, self._why_unready(), f"{HELD_BY}{held}" if held else ""
+        return "; ".join(text for text in parts if text)
+
+    def _why_unready(self) -> str:
+        """Empty if the hardware is ready. The guard's detail alone does not tell: it outlasts the fault."""
+        if self.unready in ("", self.guard.detail):
+            return NOT_READY if self.unready else ""
+        return f"{NOT_READY}: {self.unready}"
 
     def _refused(self) -> dict[str, int]:
         """Number of refused messages since start, by reason; arming requests and switches with a prefix."""

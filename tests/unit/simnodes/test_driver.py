@@ -206,3 +206,22 @@ def test_changes_in_quick_succession_do_not_silence_the_state():
         if driver.state(now_ns, now_ns) is not None:
             published_ms.append(10 * period)
     assert published_ms == [*range(0, 210, 10), 300]
+
+
+@pytest.mark.parametrize(
+    ("fault", "unready", "detail"),
+    [
+        ("read: OSError", "read: OSError", "read: OSError; not ready"),
+        ("read: OSError", "opening", "read: OSError; not ready: opening"),
+        ("read: OSError", "", "read: OSError"),
+        ("", "opening", "not ready: opening"),
+        ("", "", ""),
+    ],
+)
+def test_the_state_tells_a_fault_that_lasts_from_one_that_is_over(fault, unready, detail):
+    """Arming is refused while it lasts; the reason of the stop stays until a person arms."""
+    driver = Driver(SPEC, 7)
+    if fault:
+        driver.guard.stop(fault)
+    driver.unready = unready
+    assert driver.state(0, 0).detail == detail
