@@ -5,6 +5,7 @@ Everything is written into a temporary folder first and then moved; whoever inte
 
 from __future__ import annotations
 
+import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -81,7 +82,8 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
     """Get data sets and put them into a folder; returns their folders there.
 
     Raises:
-      UsageError: Nothing there, a file differs from its checksum, or the folder has a data set of that name.
+      UsageError: Nothing there, a file differs from its checksum, or the folder has a data set of that name, or
+        something else, which `replace` does not remove.
     """
     with _temporary_beside(data) as temporary:
         files = _fetched(place, "dataset", revision, DATA_FILES, temporary)
@@ -90,7 +92,10 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
             raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
         for name in names:
             read_manifest(temporary / name)
-        _refuse([data / name for name in names if (data / name).exists() and not replace])
+        existing = [data / name for name in names if os.path.lexists(data / name)]
+        _refuse([path for path in existing if not replace])
+        if strange := [path for path in existing if not (path / MANIFEST).is_file()]:  # the pushed names are another's
+            raise UsageError(f"{strange[0]}: is no data set, expected one where --replace is to remove it")
         data.mkdir(parents=True, exist_ok=True)
         for name in names:
             _swap(temporary / name, data / name)
@@ -165,8 +170,16 @@ def _swap(new: Path, old: Path) -> None:
     aside = old.with_name(f".{old.name}.replaced")
     if aside.exists() and not old.exists():
         aside.rename(old)  # an earlier swap was killed here
-    shutil.rmtree(aside, ignore_errors=True)
-    if old.exists():
+    _remove(aside)
+    if os.path.lexists(old):
         old.rename(aside)
     new.rename(old)
-    shutil.rmtree(aside, ignore_errors=True)
+    _remove(aside)
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder; of a symbolic link the link, not what it points to."""
+    if folder.is_symlink():
+        folder.unlink()
+    else:
+        shutil.rmtree(folder, ignore_errors=True)

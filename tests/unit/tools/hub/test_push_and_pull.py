@@ -191,6 +191,35 @@ def test_a_swap_that_was_killed_is_completed_by_the_next_one(tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["old"]
 
 
+def test_replacing_removes_data_sets_and_nothing_else(tmp_path, monkeypatch, capsys):
+    """Whoever pushed them chose the names: a data set called as a folder of the user removed it."""
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "data")
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+    (tmp_path / "mine" / "turn").mkdir(parents=True)
+    (tmp_path / "mine" / "turn" / "thesis.tex").touch()
+    line = refused(capsys, "pull", "--data", "mine", "--from", "./pushed", "--replace")
+    assert line == "tailor models: mine/turn: is no data set, expected one where --replace is to remove it\n"
+    assert [path.name for path in (tmp_path / "mine").rglob("*")] == ["turn", "thesis.tex"]
+    shutil.rmtree(tmp_path / "mine" / "turn")
+    (tmp_path / "mine" / "turn").write_text("a file")
+    assert "mine/turn: is no data set" in refused(capsys, "pull", "--data", "mine", "--from", "./pushed", "--replace")
+
+
+def test_a_link_to_a_data_set_is_replaced_again_and_again(tmp_path, monkeypatch):
+    """The link was left aside, where the next pull failed; what it points to is kept."""
+    monkeypatch.chdir(tmp_path)
+    data = data_sets(tmp_path / "data")
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "go").symlink_to(data / "go")
+    for _ in range(2):
+        assert main(["models", "pull", "--data", "mine", "--from", "./pushed", "--replace"]) == 0
+        assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["go", "turn"]
+    assert not (tmp_path / "mine" / "go").is_symlink()
+    assert (data / "go" / "manifest.json").is_file()
+
+
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
