@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 from tailor.models.cards.card import card_path
+from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.export.zoo_writer import replace_model
@@ -31,12 +32,14 @@ def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> No
       folder: An empty folder.
 
     Raises:
-      UsageError: There are no models of the robot, or one is damaged.
+      UsageError: There are no models of the robot, or one is damaged or another than its place says.
     """
     models = sorted((zoo / robot).glob("*/*.onnx"))
     if not models:
         raise UsageError(f"{zoo / robot}: no action models, expected ACTION/duration.onnx (`tailor train` writes them)")
     cards = [load_model(model).card for model in models]
+    for model, card in zip(models, cards, strict=True):
+        check_place(card, f"{robot}/{model.parent.name}/{model.stem}", model)
     files = [file.relative_to(zoo) for model in models for file in (model, card_path(model))]
     for model in models:
         replace_model(folder / model.relative_to(zoo), *read_model(model))

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import card_path
-from tailor.models.cards.checks import check_ranges
+from tailor.models.cards.checks import check_place, check_ranges
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.export.zoo_writer import replace_model
@@ -71,8 +71,9 @@ def pull_models(place: Place, revision: str | None, zoo: Path | None, replace: b
         if len(robots) != 1:
             raise UsageError(f"{place}: models of {', '.join(sorted(robots)) or 'no robot'}, expected those of one")
         robot = robots.pop()
-        for model in models:
-            _check(temporary / model)
+        with _errors_of(place, temporary):
+            for model in models:
+                _check(temporary / model)
         target = target_zoo(zoo, robot)
         _install(temporary, models, target, robot, replace)
     return [target / model for model in models]
@@ -90,8 +91,9 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
         names = sorted({file.parts[0] for file in files if file.name == MANIFEST and len(file.parts) == 2})
         if not names:
             raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
-        for name in names:
-            read_manifest(temporary / name)
+        with _errors_of(place, temporary):
+            for name in names:
+                read_manifest(temporary / name)
         existing = [data / name for name in names if os.path.lexists(data / name)]
         _refuse([path for path in existing if not replace])
         if strange := [path for path in existing if not (path / MANIFEST).is_file()]:  # the pushed names are another's
@@ -142,9 +144,19 @@ def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[s
     return files
 
 
+@contextmanager
+def _errors_of(place: Place, temporary: Path) -> Iterator[None]:
+    """Errors name the place in which a file is wrong, not the folder that is removed now."""
+    try:
+        yield
+    except UsageError as error:
+        raise UsageError(str(error).replace(str(temporary), str(place))) from None
+
+
 def _check(model: Path) -> None:
-    """Raise UsageError if a model is damaged, or its robot's actions need a wider range."""
+    """Raise UsageError if a model is damaged, or another than its place says, or its robot needs a wider range."""
     card, robot, action = load_model(model).card, model.parts[-3], model.parts[-2]
+    check_place(card, f"{robot}/{action}/{model.stem}", model)
     if robot in robot_names():
         check_ranges(card, required_ranges(robot).get(action, {}), model)
 

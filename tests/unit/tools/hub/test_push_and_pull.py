@@ -13,6 +13,7 @@ from tailor.models.episodes.episodes import Episode, read_data_set, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.models.runtime import ZOO, load_model
 from tailor.tools.hub import transfer
+from tailor.tools.hub.checksums import write_checksums
 from tailor.tools.main import main
 from tests.support.stand_ins.hub import TOKEN, running_hub
 
@@ -218,6 +219,33 @@ def test_a_link_to_a_data_set_is_replaced_again_and_again(tmp_path, monkeypatch)
         assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["go", "turn"]
     assert not (tmp_path / "mine" / "go").is_symlink()
     assert (data / "go" / "manifest.json").is_file()
+
+
+def listed_anew(folder):
+    """The checksums of a folder of models that somebody has changed by hand."""
+    files = [file.relative_to(folder) for file in folder.rglob("*") if file.suffix in (".onnx", ".json")]
+    write_checksums(folder, files)
+
+
+def test_a_model_in_the_place_of_another_is_neither_pulled_nor_pushed(folder, tmp_path, capsys):
+    """Its checksum and its card are right; it went into the zoo, where every command refused it."""
+    for end in ("onnx", "card.json"):
+        shutil.copyfile(folder / f"{ROBOT}/reach/energy.{end}", folder / f"{ROBOT}/reach/duration.{end}")
+    listed_anew(folder)
+    expected = f"{ROBOT}/reach/duration.onnx: holds a model of {ROBOT}/reach/energy, expected {ROBOT}/reach/duration"
+    assert f"models: pushed/{expected}" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
+    assert not (tmp_path / "zoo").exists()
+    assert expected in refused(capsys, "push", ROBOT, "--zoo", "pushed", "--to", "./again")
+    assert not (tmp_path / "again").exists()
+
+
+def test_a_refused_model_is_named_by_its_place(folder, capsys):
+    """The message named a folder that no longer was there."""
+    (folder / FILES[1]).unlink()
+    listed_anew(folder)
+    assert f"tailor models: pushed/{FILES[1]}: no such file" in refused(
+        capsys, "pull", "--from", "./pushed", "--zoo", "zoo"
+    )
 
 
 @pytest.mark.parametrize(
