@@ -41,7 +41,7 @@ def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -
     Raises:
       UsageError: Nothing to push, the folder exists, or the hub refuses.
     """
-    if place.folder is not None and place.folder.exists():
+    if place.folder is not None and os.path.lexists(place.folder):
         raise UsageError(f"{place.folder}: exists, expected a new folder")
     with _temporary_beside(place.folder or Path(tempfile.gettempdir()) / "push") as temporary:
         write(temporary)
@@ -130,7 +130,7 @@ def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[s
     elif not place.folder.is_dir():
         raise UsageError(f"{place}: no such folder, expected what `tailor models push --to {place}` wrote")
     else:
-        for file in (file for pattern in patterns for file in place.folder.glob(pattern)):
+        for file in (file for pattern in patterns for file in place.folder.glob(pattern) if file.is_file()):
             target = into / file.relative_to(place.folder)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, target)

@@ -2,6 +2,7 @@
 
 import filecmp
 import json
+import os
 import shutil
 
 import huggingface_hub.constants
@@ -246,6 +247,20 @@ def test_a_refused_model_is_named_by_its_place(folder, capsys):
     assert f"tailor models: pushed/{FILES[1]}: no such file" in refused(
         capsys, "pull", "--from", "./pushed", "--zoo", "zoo"
     )
+
+
+def test_what_is_no_file_is_not_pulled(folder, tmp_path, capsys):
+    """A pipe ended a pull with exit code 1 and no name, a folder called x.onnx with "is a directory"."""
+    (folder / ROBOT / "reach" / "x.onnx").mkdir()
+    assert main(["models", "pull", "--from", "./pushed", "--zoo", "zoo"]) == 0
+    (folder / FILES[0]).unlink()
+    os.mkfifo(folder / FILES[0])
+    assert f"pushed: {FILES[0]} is missing" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "other")
+
+
+def test_nothing_is_pushed_over_a_link_to_nowhere(folder, tmp_path, capsys):
+    (tmp_path / "link").symlink_to("nowhere")
+    assert "models: link: exists, expected a new folder" in refused(capsys, "push", ROBOT, "--to", "./link")
 
 
 @pytest.mark.parametrize(
