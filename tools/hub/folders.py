@@ -34,7 +34,7 @@ def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> No
     Raises:
       UsageError: There are no models of the robot, or one is damaged or another than its place says.
     """
-    models = sorted((zoo / robot).glob("*/*.onnx"))
+    models = sorted(model for model in (zoo / robot).glob("*/*.onnx") if model.name[0] != ".")  # a copy of macOS, say
     if not models:
         raise UsageError(f"{zoo / robot}: no action models, expected ACTION/duration.onnx (`tailor train` writes them)")
     cards = [load_model(model).card for model in models]

@@ -258,6 +258,12 @@ def test_what_is_no_file_is_not_pulled(folder, tmp_path, capsys):
     assert f"pushed: {FILES[0]} is missing" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "other")
 
 
+def test_models_are_pushed_without_the_copies_that_macos_leaves(folder, tmp_path):
+    (folder / ROBOT / "reach" / "._duration.onnx").write_bytes(b"of the Finder")
+    assert main(["models", "push", ROBOT, "--zoo", "pushed", "--to", "./again"]) == 0
+    assert equal(folder, tmp_path / "again", FILES)
+
+
 def test_nothing_is_pushed_over_a_link_to_nowhere(folder, tmp_path, capsys):
     (tmp_path / "link").symlink_to("nowhere")
     assert "models: link: exists, expected a new folder" in refused(capsys, "push", ROBOT, "--to", "./link")
