@@ -16,6 +16,7 @@ from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.survey import Stream, Survey, percentiles, survey
 
+MAX_DIGITS = 20  # of a count; Python reads none of thousands
 MAX_ROWS = 500  # of the table of topics: a run has about 30, and formatting thousands takes minutes
 
 
@@ -74,7 +75,7 @@ def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
 
 
 def _counts(entries: dict[str, str]) -> dict[str, int | str]:
-    return {key: int(count) if count.isdecimal() else count for key, count in entries.items()}
+    return {key: int(n) if n.isdecimal() and len(n) < MAX_DIGITS else n for key, n in entries.items()}
 
 
 def _stream(stream: Stream) -> dict[str, Any]:
@@ -95,8 +96,15 @@ def _time(wall_ns: int) -> str:
 
 
 def _parsed(text: str) -> Any:
+    """The JSON object in a text; the text itself if it is none, or has a NaN or Infinity, which JSON has not."""
     table = table_of(text)
-    return text if isinstance(table, Rejected) else table
+    if isinstance(table, Rejected):
+        return text
+    try:
+        json.dumps(table, allow_nan=False)
+    except ValueError:
+        return text
+    return table
 
 
 def _show(summary: dict[str, Any]) -> None:

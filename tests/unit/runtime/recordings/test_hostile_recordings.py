@@ -48,13 +48,20 @@ def foreign(path, rows=((10, "x"),), metadata=()):
 
 @pytest.mark.parametrize(
     "metadata",
-    [("drops", {"odom": "many"}), ("provenance", {"json": "[" * 100_000}), ("provenance", {"json": "[1, 2]"})],
+    [
+        ("drops", {"odom": "many"}),
+        ("drops", {"odom": "9" * 5000}),
+        ("provenance", {"json": "[" * 100_000}),
+        ("provenance", {"json": "[1, 2]"}),
+        ("provenance", {"json": '{"a": NaN, "b": 1e999}'}),
+    ],
 )
 def test_info_accepts_any_metadata(tmp_path, capsys, metadata):
     path = foreign(tmp_path / "a.mcap", metadata=[metadata])
     assert main(["info", str(path)]) == int(metadata[0] == "drops")
     assert main(["info", "--json", str(path)]) == int(metadata[0] == "drops")
-    assert json.loads(capsys.readouterr().out.splitlines()[-1])["messages"] == 1
+    summary = json.loads(capsys.readouterr().out.splitlines()[-1], parse_constant=pytest.fail)
+    assert summary["messages"] == 1
 
 
 def test_info_escapes_control_characters_and_markup_of_topics(tmp_path, capsys):
