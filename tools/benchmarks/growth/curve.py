@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -48,7 +49,7 @@ class Curve:
             "work": self.work,
             "cost": self.cost,
             "points": [[float(work), float(cost)] for work, cost in self.points],
-            "exponent": round(self.exponent, 2),
+            "exponent": None if math.isnan(self.exponent) else round(self.exponent, 2),
             "allowed": self.allowed,
             "too_fast": self.too_fast,
         }

@@ -33,6 +33,13 @@ def test_overhead_of_small_work_does_not_hide_growth():
     assert Curve("a cost", "work", "s", points, 1.0).too_fast
 
 
+def test_one_point_has_no_exponent_and_is_written_as_json():
+    fields = Curve("a cost", "work", "s", [(1.0, 2.0)], 1.0).fields()
+    assert fields["exponent"] is None
+    assert not fields["too_fast"]
+    json.dumps(fields, allow_nan=False)
+
+
 @pytest.mark.parametrize(("exponent", "too_fast"), [(0.0, False), (1.2, False), (1.3, True), (2.0, True)])
 def test_what_grows_faster_than_allowed_is_named(exponent, too_fast):
     assert curve(exponent).too_fast == too_fast
