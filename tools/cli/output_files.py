@@ -25,3 +25,19 @@ def check_output(flag: str, output: Path, suffixes: Sequence[str]) -> None:
         raise UsageError(f"{flag} {output}: expected a name that ends in {expected}")
     if output.is_dir():
         raise UsageError(f"{flag} {output}: is a folder, expected a file")
+
+
+def check_writable(flag: str, output: Path) -> None:
+    """Make the folder of a file, and refuse a file that cannot be written: before hours of work, not after them.
+
+    Raises:
+      UsageError: It cannot be written. One that is there is unchanged.
+    """
+    existed = output.exists()
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.open("ab").close()
+    except OSError as error:
+        raise UsageError(f"{flag} {output}: {error.strerror}, expected a file that can be written") from error
+    if not existed:
+        output.unlink()

@@ -15,6 +15,7 @@ from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.cli.extras import BENCHMARKS_NEED, require
 from tailor.tools.cli.given_options import given_options
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.output_files import check_output, check_writable
 from tailor.tools.cli.terminal import table_console
 
 BENCHMARKS = {
@@ -72,7 +73,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run each benchmark; 0 if all have measured something and no invariant of a soak was violated, otherwise 1.
 
     Raises:
-      UsageError: An unknown name, an option that none of the benchmarks uses, or a missing extra.
+      UsageError: An unknown name, an option that none of the benchmarks uses, a file that cannot be written, or a
+        missing extra.
     """
     known = (*BENCHMARKS, *ON_REQUEST)
     unknown = sorted(set(arguments.names) - set(known))
@@ -80,6 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"no benchmark {', '.join(unknown)}, expected some of: {', '.join(known)}")
     names = arguments.names or list(BENCHMARKS)
     _refuse_ignored(arguments, names)
+    _check_output(arguments, names)
     require(*dict.fromkeys(extra for name in names for extra in BENCHMARKS_NEED.get(name, ())))
     console, code = table_console(), 0
     for name in names:
@@ -101,13 +104,30 @@ def _refuse_ignored(arguments: argparse.Namespace, names: Sequence[str]) -> None
             raise UsageError(f"--{option}: not used by {', '.join(names)}, only by {', '.join(USED_BY[option])}")
 
 
+def _check_output(arguments: argparse.Namespace, names: Sequence[str]) -> None:
+    """Raises UsageError if the results could not be told apart, or not be written after minutes to hours of work."""
+    writing = [name for name in (SOAK, GROWTH) if name in names]
+    if arguments.json and set(names) != {SOAK}:
+        raise UsageError(f"--json: of soak alone, found {', '.join(names)}, which print tables")
+    if arguments.output is not None and len(writing) > 1:
+        raise UsageError(f"--output {arguments.output}: of one benchmark, found {', '.join(writing)}")
+    for name in writing:
+        output = _output_of(name, arguments)
+        check_output("--output", output, (".json",))
+        check_writable("--output", output)
+
+
+def _output_of(name: str, arguments: argparse.Namespace) -> Path:
+    return arguments.output or Path(f"out/{name}.json")
+
+
 def _run_one(name: str, console: Console, arguments: argparse.Namespace) -> bool:
     if name == "planning" and arguments.scale:
         for module_name in SCALE:
             importlib.import_module(f"tailor.tools.benchmarks.{module_name}").run(console, arguments.quick)
         return True
     module = importlib.import_module(f"tailor.tools.benchmarks.{ROOMS.get(name, name)}")
-    output = arguments.output or Path(f"out/{name}.json")
+    output = _output_of(name, arguments)
     if name == GROWTH:
         module.run(console, arguments.quick, output)
         return True

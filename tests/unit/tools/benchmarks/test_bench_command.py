@@ -82,6 +82,27 @@ def test_options_that_one_benchmark_of_the_call_uses_are_accepted(stand_ins, mon
     assert main(["bench", "--quick"]) == 1, "the other one measures nothing"
 
 
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("soak", "ticks", "--json"), "--json: of soak alone, found soak, ticks"),
+        (("soak", "growth", "--output", "x.json"), "--output x.json: of one benchmark, found soak, growth"),
+        (("growth", "--output", "x.png"), "--output x.png: expected a name that ends in .json"),
+        (("soak", "--output", "run.mcap"), "--output run.mcap: expected a name that ends in .json"),
+        (("soak", "--output", "run.mcap/x.json"), "--output run.mcap/x.json: "),
+    ],
+)
+def test_results_that_could_not_be_written_are_refused_before_the_work(words, expected, monkeypatch, tmp_path, capsys):
+    """A soak of hours ended without its results, a recording was overwritten, and tables stood in the JSON."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "run.mcap").write_bytes(b"of the user")
+    monkeypatch.setattr(bench, "_run_one", lambda *_: pytest.fail("it ran"))
+    assert main(["bench", *words]) == 2
+    assert f"tailor bench: {expected}" in capsys.readouterr().err
+    assert (tmp_path / "run.mcap").read_bytes() == b"of the user"
+    assert [path.name for path in tmp_path.iterdir()] == ["run.mcap"]
+
+
 def test_planning_without_problems_has_measured_nothing(monkeypatch, tmp_path):
     monkeypatch.setattr(planning, "DATA", tmp_path)
     with pytest.raises(NoMeasurement, match="no problems in"):
