@@ -1,8 +1,10 @@
-"""Names of files that a command is to write, checked before it works for them."""
+"""Files that a command is to write: names checked before it works for them, contents whole or not at all."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
@@ -25,6 +27,30 @@ def check_output(flag: str, output: Path, suffixes: Sequence[str]) -> None:
         raise UsageError(f"{flag} {output}: expected a name that ends in {expected}")
     if output.is_dir():
         raise UsageError(f"{flag} {output}: is a folder, expected a file")
+
+
+@contextmanager
+def whole_output(output: Path) -> Iterator[Path]:
+    """Path to write to in the block, at whose end the file takes its place, its folder made: whole, or not at all.
+
+    What ends the block, as a full disk or Ctrl-C, leaves a file of that name as it was.
+
+    Raises:
+      UsageError: The file cannot be written.
+    """
+    place = Path(os.path.realpath(output))  # through a symbolic link, as other programs write
+    temporary = place.with_name(f".{os.getpid()}{place.suffix}")  # libraries choose the format by the suffix
+    if place.exists() and not os.access(place, os.W_OK):
+        raise UsageError(f"{output}: is read-only, expected a file that can be written")
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        yield temporary
+        temporary.replace(place)
+    except OSError as error:
+        raise UsageError(f"{output}: {error.strerror or error}, expected a file that can be written") from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
 
 
 def check_writable(flag: str, output: Path) -> None:

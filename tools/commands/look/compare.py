@@ -15,7 +15,7 @@ from rich.table import Table
 
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.comparison import ComparedRun, chosen, command_differences, compared_run
@@ -42,7 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot:
         from tailor.tools.figures.comparison_plot import draw_comparison
 
-        draw_comparison(replace(a, name=plain(a.name)), replace(b, name=plain(b.name)), arguments.plot)
+        with whole_output(arguments.plot) as picture:
+            draw_comparison(replace(a, name=plain(a.name)), replace(b, name=plain(b.name)), picture)
     return 0 if comparison["equal"] else 1
 
 

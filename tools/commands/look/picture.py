@@ -9,7 +9,7 @@ import argparse
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 
 
@@ -36,6 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
         raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
     draw = move_paths if arguments.output.suffix.lower() in SUFFIXES else draw_paths
-    draw(tracks, arguments.output)
+    with whole_output(arguments.output) as picture:
+        draw(tracks, picture)
     print(arguments.output)
     return 0

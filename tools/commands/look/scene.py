@@ -23,7 +23,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
@@ -83,10 +83,8 @@ def _layout(arguments: argparse.Namespace) -> int:
     text = json.dumps(layout(arguments.layout), indent=1)
     target: Path = arguments.output or Path(f"{arguments.layout}.foxglove.json")
     check_output("--output", target, (".json",))
-    try:
-        target.write_text(f"{text}\n", encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{target}: {error.strerror}, expected a file that can be written") from error
+    with whole_output(target) as whole:
+        whole.write_text(f"{text}\n", encoding="utf-8")
     print(target)
     return 0
 

@@ -12,7 +12,7 @@ from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, refuse_bus_flags
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
@@ -82,11 +82,8 @@ def _write(arguments: argparse.Namespace) -> int:
         runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}
         [title, *_] = runs
         text = side_by_side(plain(output.stem), "", runs) if others else page(title, runs[title])
-    try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{output}: {error.strerror}, expected a file that can be written") from error
+    with whole_output(output) as whole:
+        whole.write_text(text, encoding="utf-8")
     print(output)
     return 0
 

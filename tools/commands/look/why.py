@@ -15,7 +15,7 @@ from typing import Any
 from rich.console import Console
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.recordings.damage_notice import warn
@@ -151,13 +151,13 @@ def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
     from tailor.tools.figures.alternatives import draw_alternatives  # imports matplotlib, which is slow
     from tailor.tools.figures.report_page import image, page
 
-    if output.suffix.lower() == ".png":
-        draw_alternatives(explained, output)
-    else:
-        with tempfile.TemporaryDirectory() as folder:
-            picture = Path(folder) / "alternatives.png"
-            draw_alternatives(explained, picture)
-            body = [image(picture, "predicted durations over the free parameters")]
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(page("Why these subgoals", body), encoding="utf-8")
+    with whole_output(output) as whole:
+        if output.suffix.lower() == ".png":
+            draw_alternatives(explained, whole)
+        else:
+            with tempfile.TemporaryDirectory() as folder:
+                picture = Path(folder) / "alternatives.png"
+                draw_alternatives(explained, picture)
+                body = [image(picture, "predicted durations over the free parameters")]
+            whole.write_text(page("Why these subgoals", body), encoding="utf-8")
     print(output, file=sys.stderr)  # stdout may hold JSON

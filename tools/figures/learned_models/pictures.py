@@ -16,6 +16,7 @@ from tailor.models.episodes.examples import Examples, success_examples
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.figures.learned_models import regions, shapes
 from tailor.tools.learning.known_episodes import known_episodes
 
@@ -67,7 +68,8 @@ def _save(path: Path, title: str, fill: Callable[[Any], None]) -> Path:
     figure = plt.figure(figsize=(9, 4.5), layout="constrained")
     figure.suptitle(title, fontsize="medium", fontweight="bold")
     fill(figure)
-    figure.savefig(path, dpi=110)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=110)
     plt.close(figure)
     return path
 
