@@ -12,6 +12,7 @@ from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from tailor.schemas.errors import UsageError
 from tailor.tools.figures.paths import COLOURS, across, corners, draw_goals, limits_of
 from tailor.tools.figures.track import Track, TrackPoint
 
@@ -19,6 +20,7 @@ SUFFIXES = (".gif", ".webp", ".apng")
 FRAMES_PER_S = 10  # as many as a track has points
 HOLD_S = 2.5  # at the end
 DOTS_PER_INCH = 72
+MAX_S = 300.0  # of a run: all frames are in memory until the end, half a megabyte each and run
 
 
 class MovingPath:
@@ -60,6 +62,15 @@ def _words(track: Track, now: TrackPoint, since_s: float) -> str:
     return f"{track.actual_s:.1f} s" if now is track.points[-1] else f"{since_s:.1f} s, {now.name}"
 
 
+def _seconds(track: Track) -> float:
+    """Time from the first action to the end of the last one."""
+    seconds = track.points[-1].time_s - track.points[0].time_s
+    if not 0.0 <= seconds <= MAX_S:
+        expected = f"expected 0 to {MAX_S:g} s for a picture that moves (a .png stands still; see `tailor cut`)"
+        raise UsageError(f"{track.title}: its actions take {seconds:.1f} s, {expected}")
+    return seconds
+
+
 def move_paths(tracks: Sequence[Track], path: Path, frames_per_s: int = FRAMES_PER_S, hold_s: float = HOLD_S) -> None:
     """Draw the runs side by side, to the same scale and in step, into an animated picture.
 
@@ -68,7 +79,11 @@ def move_paths(tracks: Sequence[Track], path: Path, frames_per_s: int = FRAMES_P
       path: Its suffix is the format, one of SUFFIXES.
       frames_per_s: Frames for each second of the runs, which the picture shows as fast as they were.
       hold_s: Duration of the last frame.
+
+    Raises:
+      UsageError: A run takes too long, or its times go backward.
     """
+    longest_s = max(map(_seconds, tracks))
     figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained", dpi=DOTS_PER_INCH)
     limits = limits_of(tracks)
     paths = []
@@ -80,7 +95,6 @@ def move_paths(tracks: Sequence[Track], path: Path, frames_per_s: int = FRAMES_P
     paths[0].show(0.0)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # nothing moves but what is drawn
-    longest_s = max(track.points[-1].time_s - track.points[0].time_s for track in tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
     writer = PillowWriter(frames_per_s)
     with writer.saving(figure, str(path), DOTS_PER_INCH):

@@ -1,6 +1,7 @@
 """Draw recorded runs like the paper's Figure 1: lines across the heading whose length is the speed.
 
-If its name ends in .gif, .webp or .apng, the picture moves: the runs in step from their first actions, in real time.
+If its name ends in .gif, .webp or .apng, the picture moves: the runs in step from their first actions, in real time, at
+most 300 s.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,3 +51,13 @@ def test_a_recording_without_an_action_has_no_picture_that_moves(tmp_path: Path,
     monkeypatch.setattr("tailor.tools.figures.recorded_track.recorded_track", lambda title, path: Track(title))
     with pytest.raises(UsageError, match=r"still\.mcap: no action"):
         picture.run(argparse.Namespace(recording=[Path("still.mcap")], output=tmp_path / "a.webp"))
+
+
+@pytest.mark.parametrize("last_s", [3600.0, 1e9, 1.0])
+def test_a_run_whose_frames_would_fill_the_memory_or_has_none_is_refused(tmp_path: Path, last_s: float) -> None:
+    """Times of foreign recordings jump: the first two took all memory, the last one ended in a traceback."""
+    jumping = track("run", 5)
+    jumping.points[-1] = replace(jumping.points[-1], time_s=last_s)
+    with pytest.raises(UsageError, match=r"run: its actions take .* s, expected 0 to 300 s"):
+        move_paths([track("a", 3), jumping], tmp_path / "runs.gif", frames_per_s=0 if last_s > 100 else 10)
+    assert not list(tmp_path.iterdir())
