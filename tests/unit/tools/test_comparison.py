@@ -116,6 +116,35 @@ def test_info_summarises_a_recording(tmp_path, capsys):
     assert info["ticks"]["skipped_periods"] == 1
 
 
+def test_commands_of_other_axes_are_not_equal(tmp_path, capsys):
+    """Axes were compared by their place, those that one run lacks not at all: a base equalled a base with an arm."""
+    whole, base = Script(tmp_path / "whole.mcap"), Script(tmp_path / "base.mcap")
+    for tick in range(1, 6):
+        for script, keys in ((whole, ("agilo/cmd_vel", "rover/cmd_vel")), (base, ("agilo/cmd_vel",))):
+            for key in keys:
+                script.say(tick * 100, key, VelocityCommand(0, 0.5, 0.1))
+            script.say(tick * 100 + 5, "exec/tick", replace(example(TickReport), tick=tick))
+    files = whole.close(), base.close()
+    code, compared = json_of(capsys, "compare", *files)
+    assert (code, compared["equal"], compared["commands"]["first_s"]) == (1, False, None)
+    assert [len(compared[side]["axes"]) for side in ("first", "second")] == [4, 2]
+    assert main(["compare", *files]) == 1
+    assert "axes: v [m/s], omega [rad/s], v [m/s], omega [rad/s] against v" in capsys.readouterr().out
+
+
+def test_a_run_that_ends_earlier_is_named(tmp_path, capsys):
+    """The commands were "equal over" the shorter run, with exit code 1 and no reason."""
+    files = []
+    for count in (5, 8):
+        script = Script(tmp_path / f"{count}.mcap")
+        for tick in range(1, count):
+            script.say(tick * 100, "agilo/cmd_vel", VelocityCommand(0, 0.5, 0.1))
+            script.say(tick * 100 + 5, "exec/tick", replace(example(TickReport), tick=tick))
+        files.append(script.close())
+    assert main(["compare", *files]) == 1
+    assert "number of commands: 4 against 7; compared as far as both go" in capsys.readouterr().out
+
+
 def test_gaps_between_unsigned_messages_are_no_loss():
     """Other recorders number the messages of all senders together."""
     for sender, lost in ((DRIVER, 7), ("", 0)):

@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
@@ -49,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _comparison(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
     apart = {name: None if math.isnan(value) else round(value, 6) for name, value in command_differences(a, b).items()}
-    same_commands = apart["first_s"] is None and len(a.commands) == len(b.commands)
+    same_commands = a.axes == b.axes and apart["first_s"] is None and len(a.commands) == len(b.commands)
     return {
         "equal": same_commands and a.result == b.result,
         "commands": apart,
@@ -58,6 +59,7 @@ def _comparison(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
                 "file": run.name,
                 "result": run.result,
                 "total_s": round(run.total_s, 3),
+                "axes": list(run.axes),
                 "actions": [_action(action) for action in run.actions],
                 "plans": [plan.plan for plan in run.plans],
                 "subgoals": [chosen(subgoals) for subgoals in run.subgoals],
@@ -87,11 +89,22 @@ def _show(a: ComparedRun, b: ComparedRun, comparison: dict[str, Any]) -> None:
         total += f" ({b.total_s / a.total_s - 1:+.1%})"
     console.print(f"durations: {total}; results: {a.result or 'none'}, {b.result or 'none'}")
     apart = comparison["commands"]
+    for line in _unlike(a, b):
+        console.print(plain(line))
     if apart["first_s"] is None:
         console.print(f"commands: equal over {apart['seconds']:.1f} s")
     else:
         first, rms, largest = (apart[name] for name in ("first_s", "rms", "max"))
         console.print(f"commands: first differ {first:.1f} s after the start; RMS {rms:.3f}, largest {largest:.3f}")
+
+
+def _unlike(a: ComparedRun, b: ComparedRun) -> Iterator[str]:
+    """What the differences of the commands leave out: other axes, and the end of the longer run."""
+    if a.axes != b.axes:
+        left, right = (", ".join(run.axes) or "none" for run in (a, b))
+        yield f"axes: {left} against {right}; compared in this order, as far as both have them"
+    if len(a.commands) != len(b.commands):
+        yield f"number of commands: {len(a.commands)} against {len(b.commands)}; compared as far as both go"
 
 
 def _brief(action: ActionFinished) -> str:
