@@ -17,6 +17,7 @@ from tailor.schemas.messages import ActionFinished, ExecStatus, JointCommand, Pl
 from tailor.schemas.messages.message import Message
 from tailor.schemas.reason_text import result_text
 from tailor.schemas.topics import TOPICS
+from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
 
 COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
@@ -42,14 +43,15 @@ class ComparedRun:
 
 
 def compared_run(path: Path) -> ComparedRun:
-    """First run in a recording.
+    """First run in a recording; a damaged file is warned of.
 
     Raises:
       UsageError: The file is not a recording, holds no run, or a message of the run is damaged.
     """
-    run = RecordedRuns(path).runs[0]
+    runs = RecordedRuns(path)
+    warn(path, runs.damage)
     try:
-        return _compared(path.stem, run)
+        return _compared(path.stem, runs.runs[0])
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
 

@@ -145,6 +145,16 @@ def test_a_run_that_ends_earlier_is_named(tmp_path, capsys):
     assert "number of commands: 4 against 7; compared as far as both go" in capsys.readouterr().out
 
 
+def test_the_rest_of_a_damaged_run_does_not_pass_for_the_run_in_a_comparison(tmp_path, capsys):
+    whole, torn = a_run(tmp_path / "whole.mcap"), tmp_path / "torn.mcap"
+    torn.write_bytes(Path(whole).read_bytes()[:-40])
+    main(["compare", whole, str(torn), "--json"])
+    captured = capsys.readouterr()
+    assert captured.err.startswith("torn.mcap is damaged: no footer; ")
+    assert captured.err.count("only its readable messages are shown") == 1
+    json.loads(captured.out)
+
+
 def test_gaps_between_unsigned_messages_are_no_loss():
     """Other recorders number the messages of all senders together."""
     for sender, lost in ((DRIVER, 7), ("", 0)):
