@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import tee
 from typing import Protocol
@@ -19,6 +19,8 @@ from tailor.tools.recordings.core_comparison import RunComparison, without_proof
 from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 from tailor.tools.recordings.recorded_source import source_contrast
+
+END_NS = 2**31 * 10**9  # of the seconds in a ROS message
 
 
 class TickWriter(Protocol):
@@ -117,7 +119,7 @@ def _first_difference(
     comparison: RunComparison, runs: RecordedRuns, run: RecordedRun, context: Context, writer: TickWriter | None
 ) -> Difference | None:
     difference = None
-    ticks, inputs = tee(runs.ticks(run))
+    ticks, inputs = tee(_in_time(runs, run, context))
     for tick, (_, outputs) in zip(ticks, replay(context, inputs), strict=True):
         difference = difference or comparison.tick(tick.tick, outputs)
         if writer is not None:
@@ -125,6 +127,16 @@ def _first_difference(
         elif difference is not None:
             break
     return difference or comparison.missing()
+
+
+def _in_time(runs: RecordedRuns, run: RecordedRun, context: Context) -> Iterator[RecordedTick]:
+    """Ticks of a run; raises UsageError at one whose times no message can state."""
+    for tick in runs.ticks(run):
+        for time_ns in (tick.now_ns, *(sample.arrival_ns for sample in tick.inputs.samples)):
+            if not 0 <= (stamp_ns := context.stamp(time_ns)) < END_NS:
+                problem = f"tick {tick.tick} has a time of {stamp_ns} ns, expected 0 to {END_NS:g}"
+                raise UsageError(f"{runs.path}: {problem}, as messages state times")
+        yield tick
 
 
 def verdict_text(verdict: Verdict) -> str:

@@ -112,6 +112,24 @@ def test_without_its_first_tick_nothing_is_verified(tmp_path, capsys, whole):
     assert "tick 1 is missing" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("field", ["now_ns", "input_arrivals_ns"])
+@pytest.mark.parametrize("time_ns", [-1, 2**62])
+def test_a_tick_at_a_time_that_no_message_states_ends_the_verification(tmp_path, capsys, whole, field, time_ns):
+    """Of ticks of foreign clocks `verify` and `verify -o` ended in tracebacks."""
+    ticks = [(at, message) for at, message in enumerate(whole) if message.key == TICK_KEY]
+    at, seventh = next(row for row in ticks if decode(TickReport, row[1].data).tick == 7)
+    tick = decode(TickReport, seventh.data)
+    values = {"now_ns": time_ns, "input_arrivals_ns": (time_ns,) * len(tick.input_keys)}
+    changed = replace(seventh, data=encode(replace(tick, **{field: values[field]})))
+    path = written(tmp_path / "a.mcap", [*whole[:at], changed, *whole[at + 1 :]])
+    expected = f"{path}: tick 7 has a time of {time_ns} ns, expected 0 to 2.14748e+18"
+    assert main(["verify", str(path)]) == 2
+    assert f"not verified to the end: {expected}" in capsys.readouterr().out
+    assert main(["verify", str(path), "-o", str(tmp_path / "b.mcap")]) == 2
+    assert capsys.readouterr().err.startswith(f"tailor verify: {expected}")
+    assert not (tmp_path / "b.mcap").exists()
+
+
 def copied(whole, executive, **provenance):
     """The run once more, by a stranger of another provenance."""
     copies = [replace(m, sender=STRANGER) for m in whole if m.sender == executive]
