@@ -27,6 +27,7 @@ from tailor.tools.recordings.executive_run import (
 __all__ = ["PROVENANCE_KEY", "TICK_KEY", "RecordedRun", "RecordedRuns", "decoded"]
 
 MAX_BYTES = 1_000_000_000  # a run has about 10 MB a minute
+HEAD_BYTES = 200  # of memory for each message beside its data, which may be empty
 MAX_REASONS = 3  # listed separately: a file may hold any number of foreign senders
 ANSWER_KEY = TOPICS["plan_answer"].key  # published by the executive, but an input of its core
 
@@ -127,7 +128,7 @@ def _bounded(recording: Recording) -> Iterator[Recorded]:
     for message in recording.messages():
         if type_of(message.ros_type) is None:
             continue
-        size += len(message.data)
+        size += HEAD_BYTES + len(message.data)
         if size > MAX_BYTES:
             raise UsageError(
                 f"{recording.path}: more than {MAX_BYTES} bytes of messages, expected less (see `tailor cut`)"

@@ -202,6 +202,14 @@ def test_a_run_that_unpacks_to_more_than_fits_into_memory_is_refused(monkeypatch
         RecordedRuns(GOLDEN)
 
 
+def test_a_run_of_very_many_empty_messages_is_refused(tmp_path, monkeypatch):
+    """They count as much as they take: 40 kB can hold millions of messages without data, 0.1 kB of memory each."""
+    path = foreign(tmp_path / "a.mcap", [(k, "x") for k in range(1000)])
+    monkeypatch.setattr(recorded_run, "MAX_BYTES", 100_000)
+    with pytest.raises(UsageError, match="more than 100000 bytes of messages"):
+        RecordedRuns(path)
+
+
 # --- replay --------------------------------------------------------------------------------------
 def test_a_malformed_sender_counts_as_unsigned(tmp_path):
     path = tmp_path / "a.mcap"
