@@ -15,6 +15,7 @@ from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.values import Array
 from tailor.tools.benchmarks.intervals import half_width
+from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
@@ -42,13 +43,19 @@ def run(console: Console, quick: bool) -> None:
 
 
 def compared(title: str, driven: Callable[[int, Costs], Run], count: int, first: int = 0) -> Table:
-    """Runs with plans by steps and by models from so many starts; times are means over pairs that both achieve."""
+    """Runs with plans by steps and by models from so many starts; times are means over pairs that both achieve.
+
+    Raises:
+      NoMeasurement: There is no such pair.
+    """
     seeds = range(first, first + count)
     runs = {costs: [driven(seed, costs) for seed in seeds] for costs in get_args(Costs)}
     table = Table(title=f"{title}, {count} start{'s'[: count != 1]}", box=None)
     for column in ("plans by", "achieved", "first action after", "mean duration", "saved", "faster", "slower"):
         table.add_column(column, justify="left" if column == "plans by" else "right")
     both = [n for n in range(count) if all(rows[n].achieved for rows in runs.values())]
+    if not both:
+        raise NoMeasurement(f"{title}: no start from which both kinds of plans achieve the goal")
     for costs, rows in runs.items():
         saved_s = np.array([runs["steps"][n].duration_s - rows[n].duration_s for n in both])
         times = (np.mean([rows[n].started_s for n in both]), np.mean([rows[n].duration_s for n in both]))
