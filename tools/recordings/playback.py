@@ -90,10 +90,14 @@ def remapping(words: Sequence[str]) -> dict[str, str]:
     """Table of OLD=NEW words: old key -> new key.
 
     Raises:
-      UsageError: A word has another form.
+      UsageError: A word has another form, or a key has two new ones.
     """
     pairs = [word.split("=") for word in words]
     for word, pair in zip(words, pairs, strict=True):
         if len(pair) != 2 or not all(pair):
             raise UsageError(f"--remap {word}: expected OLD=NEW, e.g. agilo/odom=ghost/odom")
-    return {pair[0]: pair[1] for pair in pairs}
+    table = {pair[0]: pair[1] for pair in pairs}
+    for old, new in pairs:
+        if table[old] != new:
+            raise UsageError(f"--remap {old}={new}: {old} becomes {table[old]}, too, expected one new key for each")
+    return table

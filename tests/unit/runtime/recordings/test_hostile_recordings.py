@@ -236,6 +236,13 @@ def test_an_empty_selection_is_an_error_instead_of_an_endless_loop(tmp_path):
             part.channels()
 
 
+def test_a_key_with_two_new_ones_is_refused(tmp_path, capsys):
+    """The last one counted, without a word."""
+    path = str(foreign(tmp_path / "a.mcap"))
+    assert main(["replay", path, "--remap", "x=y", "--remap", "x=z", "--connect", "tcp/127.0.0.1:9"]) == 2
+    assert "--remap x=y: x becomes z, too, expected one new key for each" in capsys.readouterr().err
+
+
 def test_excluded_keys_are_excluded_after_remapping_as_well(tmp_path):
     recording = open_recording(foreign(tmp_path / "a.mcap", [(1, "x"), (2, "y")]))
     part = RecordingPart(recording, Selection(), {"x": "agilo/cmd_vel"}, excluded_keys=Selection(exclude=("cmd_vel",)))
