@@ -16,6 +16,7 @@ from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.explanations.explanation import accepted, chosen_values, sequence_of
 
 CHECKS = 1500  # live, a decision has some 100 to 300
+OF_ANY_GAIN = {"gain_min_s": 0.0, "gain_k_std": 0.0}  # otherwise the search for the greedy choice takes all checks
 
 
 def best_cost(
@@ -35,7 +36,7 @@ def best_cost(
     sequence = sequence_of(message, library, objects)
     if sequence is None:
         raise ValueError("the library lacks an action of the sequence")
-    settings = replace(settings, horizon=message.horizon, patience=checks, checks_max=checks)
+    settings = replace(settings, horizon=message.horizon, patience=checks, checks_max=checks, **OF_ANY_GAIN)
     chosen = chosen_values(message)
     search = Refinement(accepted(sequence, chosen, models, settings), models, settings, rng, start=chosen)
     search.advance(CheckBudget(checks))

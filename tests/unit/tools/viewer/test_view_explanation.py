@@ -123,6 +123,14 @@ def test_a_long_search_is_never_worse_than_the_choice_and_finds_what_a_poor_choi
     )
 
 
+def test_a_long_search_looks_beyond_greedy_whatever_gain_the_executive_requires(refined) -> None:
+    sequence, choice = refined
+    for required in ({"gain_k_std": 0.5}, {"gain_k_std": 0.0, "gain_min_s": 100.0}):
+        settings = replace(SETTINGS, **required)
+        least = best_cost(message_of(sequence, choice), LIBRARY, MODELS, settings, np.random.default_rng(1), checks=100)
+        assert least <= choice.total_s + 1e-9
+
+
 def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None:
     @dataclass
     class Carded(PoseDuration):
