@@ -35,7 +35,7 @@ class ModelBounds:
     Attributes:
       space: Name of the feature space.
       trees: Bounds of the trees; None: the model has none.
-      spread: Bounds of the tree of intervals; None: the standard deviation is that over the trees.
+      spread: Bounds of the tree of intervals; None: the standard deviation is that over the trees; any with networks.
       networks: Bounds of the networks; None: the model has none.
       share: Weight of the trees, 0..1; that of the networks is the rest.
     """
@@ -83,10 +83,10 @@ class ModelBounds:
         """Lower bound of the mean plus `k_std` standard deviations, as `linear_bounds.linear_bound`."""
         assert self.networks is not None
 
-        def spread(features: Spans) -> Array:
-            return k_std * self._least_spread(features, None).astype(np.float64)
+        def rest(features: Spans) -> Array:
+            return k_std * self._least_spread(features).astype(np.float64)
 
-        return linear_bound(self.networks, self.space, lower, upper, radius, spread if k_std > 0 else None)
+        return linear_bound(self.networks, self.space, lower, upper, radius, rest if k_std > 0 else None)
 
     @property
     def effort(self) -> int:
@@ -117,23 +117,21 @@ class ModelBounds:
         """Lower bound of the mean plus k standard deviations, shape (...)."""
         if k_std <= 0:
             return self._mean(features, overlap, Side.LEAST)
-        if self.spread is not None:
-            spread = np.float32(k_std) * self._least_spread(features, overlap)
+        trees = self.trees
+        if self.spread is not None or self.networks is not None or trees is None or overlap is None:
+            spread = np.float32(k_std) * self._least_spread(features)
             total: Floats = self._mean(features, overlap, Side.LEAST) + spread
             return total
-        trees = self.trees
-        if trees is None or overlap is None:
-            raise ValueError("a network without intervals has no bounds of its standard deviation")
         slack = np.float32(trees.slack)
         if trees.trees == 1:
             return np.asarray(trees.least(overlap, Side.LEAST, k_std)[0].mean(axis=0) - slack)
         least, opposite = trees.least(overlap, Side.BOTH)
         return bag_lower_bound(least, 2 * slack - opposite, k_std) - slack
 
-    def _least_spread(self, features: Spans, _: Overlap | None) -> Floats:
-        """Lower bound of the standard deviation by the tree of intervals, shape (...)."""
+    def _least_spread(self, features: Spans) -> Floats:
+        """Lower bound of the standard deviation by the tree of intervals, shape (...); without one it may be zero."""
         if self.spread is None:
-            raise ValueError("a network without intervals has no bounds of its standard deviation")
+            return np.zeros((1, 1, 1), np.float32)
         std = ANY_STD
         if self.networks is not None and self.trees is None and self.spread.depends_on(len(features)):
             std = self.networks.deviation(features)
