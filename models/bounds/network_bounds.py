@@ -153,7 +153,9 @@ def network_bounds(graph: Contents) -> NetworkBounds | None:
         return None
     weights, bias = (_of_layers(graph, name) for name in (tree_names.NETWORK_WEIGHTS, tree_names.NETWORK_BIAS))
     low, high = (float(graph.constants[name].ravel()[0]) for name in (tree_names.NETWORK_LOW, tree_names.NETWORK_HIGH))
-    share = graph.constants.get(tree_names.MEMBER_WEIGHT.format(0))
+    names = list(graph.constants)  # in the order of the members
+    of_trees = int(tree_names.LOW not in names[: names.index(tree_names.NETWORK_LOW)])
+    share = graph.constants.get(tree_names.MEMBER_WEIGHT.format(of_trees))
     return NetworkBounds(weights, bias, low, high, 0.0 if share is None else float(share.ravel()[0]))
 
 

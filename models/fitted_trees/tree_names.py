@@ -12,6 +12,6 @@ LOW, HIGH = "low", "high"  # (k, m), range that a leaf is clipped to
 LEAF_STD = "spread"  # (1, l) of one tree
 NETWORK_WEIGHTS, NETWORK_BIAS = "network_weights_{}", "network_bias_{}"  # of each layer, (k, out, in) and (k, out, 1)
 NETWORK_LOW, NETWORK_HIGH = "network_low", "network_high"  # range that the mean of the networks is clipped to
-MEMBER_WEIGHT = "weight_of_member_{}"  # of a blend: of its trees (0), of its networks (1)
+MEMBER_WEIGHT = "weight_of_member_{}"  # of a blend: of its trees and of its networks, in the order of their constants
 INTERVALS = "intervals"  # the node of the tree whose leaves hold intervals; its last feature is the std
 INTERVAL_LOWER, INTERVAL_UPPER = "interval_lower", "interval_upper"  # (l,), added to the mean

@@ -24,6 +24,7 @@ BLENDS = [
     {"network": 1.0},
     {"deep-network": 1.0},
     {"bag": 0.4, "network": 0.6},
+    {"network": 0.9, "bag": 0.1},
 ]
 
 
