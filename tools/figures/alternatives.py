@@ -55,7 +55,8 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
     valid = np.where(np.isfinite(free.alternatives.total_s), seconds, np.nan)
     axis.plot(values, seconds, color=colour, alpha=0.3, linewidth=1, linestyle=":")
     axis.plot(values, valid, color=colour, linewidth=1.8)
-    axis.set_ylim(0, 1.08 * np.nanmax(seconds))
+    if np.isfinite(seconds).any():  # a damaged message has anything
+        axis.set_ylim(0, 1.08 * np.nanmax(seconds))
     for value, style in ((free.greedy, "--"), (free.chosen, "-")):
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
     predicted = np.interp(free.chosen, values, seconds)

@@ -13,6 +13,7 @@ from tailor.executive.refinement.refinement import Refinement
 from tailor.models.features.features import Quantity
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Subgoals
+from tailor.tools.figures.alternatives import draw_alternatives
 from tailor.tools.viewer.explainer import Explainer, fields_of
 from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text
 from tailor.tools.viewer.explanations.explanation import explain, sequence_of
@@ -97,6 +98,16 @@ def test_where_energy_is_weighed_its_part_of_the_cost_is_message_of(refined) -> 
 def test_fields_are_json_even_where_everything_is_invalid(refined) -> None:
     explanation = explained(message_of(*refined))
     assert json.dumps(fields_of(replace(explanation, greedy_cost=float("inf"))), allow_nan=False)
+
+
+def test_a_decision_with_a_parameter_that_is_no_number_is_explained_and_drawn(refined, tmp_path) -> None:
+    first, *others = message_of(*refined).actions
+    place, *kept = first.parameters
+    damaged = replace(first, parameters=(replace(place, value=float("nan")), *kept))
+    explanation = explained(replace(message_of(*refined), actions=(damaged, *others)))
+    assert explanation.chosen_cost == float("inf")
+    draw_alternatives([("a decision", explanation)], tmp_path / "why.png")
+    assert (tmp_path / "why.png").exists()
 
 
 def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -> None:
