@@ -47,7 +47,24 @@ def test_nested_tables_become_nested_settings():
         ),
         (
             {"executive": {"refinement": {"arrival_spread": [["x", -0.1]]}}},
-            "f.toml: refinement.arrival_spread of x is -0.1, expected a finite number >= 0",
+            "f.toml: refinement.arrival_spread of x is -0.1, expected a number from 0 to 1e+06",
+        ),
+        (
+            {"executive": {"refinement": {"arrival_spread": [["phi", 1e300]]}}},
+            "f.toml: refinement.arrival_spread of phi is 1e+300, expected a number from 0 to 1e+06",
+        ),
+        (
+            {"executive": {"refinement": {"k_std": 1e39}}},
+            "f.toml: refinement.k_std is 1e+39, expected a number from 0 to 1e+06",
+        ),
+        (
+            {"executive": {"refinement": {"assertion_depth": 1000}}},
+            "f.toml: refinement.assertion_depth is 1000, expected at most 8",
+        ),
+        ({"executive": {"refinement": {"horizon": 1000}}}, "f.toml: refinement.horizon is 1000, expected at most 50"),
+        (
+            {"executive": {"refinement": {"greedy_checks": 10**9}}},
+            "f.toml: refinement.greedy_checks is 1000000000, expected at most 100",
         ),
         ({"bus": 5}, "f.toml: 'bus' is 5, expected a table"),
         (
