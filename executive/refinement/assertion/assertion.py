@@ -91,7 +91,7 @@ class Assertion:
         """Assert a subgoal before the current action, accept its least risk, or fail."""
         instance, depth = self._sequence.actions[self._position], self._depth()
         reason = f"{instance.action.name} is predicted to fail (success probability at most {1 - least_failure:.2f})"
-        if instance.action.subgoal_action not in self._sequence.library:
+        if not self._has_subgoal_action():
             return Failure(f"{reason} and has no subgoal action")
         may_settle = depth and (not instance.asserted or depth >= self._settings.assertion_depth)
         if may_settle and least_failure <= self._settings.p_fail_settle:
@@ -164,13 +164,17 @@ class Assertion:
         return among_objects and several and comparison.failure > self._settings.p_fail_settle
 
     def _assert_all_subgoals(self) -> bool | Failure:
-        """Compare with as many subgoals as are allowed, searched together: alone, each leg may be feasible."""
-        action, depth = self._sequence.actions[self._position], self._settings.assertion_depth
-        for _ in range(depth):
-            self._sequence = with_subgoal(self._sequence, self._position)
+        """Compare with as many subgoals as are possible, searched together: alone, each leg may be feasible."""
+        action, count = self._sequence.actions[self._position], 0
+        while count < self._settings.assertion_depth and self._has_subgoal_action():
+            self._sequence, count = with_subgoal(self._sequence, self._position), count + 1
         return self._resort(
-            f"{action.action.name} is predicted to fail even after {depth} asserted subgoals", action.context
+            f"{action.action.name} is predicted to fail even after {count} asserted subgoals", action.context
         )
+
+    def _has_subgoal_action(self) -> bool:
+        """Whether a subgoal can be asserted before the current action."""
+        return self._sequence.actions[self._position].action.subgoal_action in self._sequence.library
 
     def _assert_subgoal(self, sequence: ActionSequence) -> None:
         """Adopt a sequence with a subgoal, and check the subgoal action first: it is now at the current position."""

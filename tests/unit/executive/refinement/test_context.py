@@ -177,6 +177,16 @@ def test_trap_that_one_subgoal_does_not_lead_out_of_gets_two():
     assert max(search.choice.failure) < 0.05
 
 
+def test_subgoal_action_that_has_none_itself_gets_no_second_subgoal():
+    go, approach = replace(GO_AROUND, subgoal_action=""), replace(APPROACH_AROUND, subgoal_action="goToPose")
+    ring = tuple((1 + 0.6 * np.cos(a), 0.6 * np.sin(a), 0.3) for a in np.arange(10) * np.pi / 5)
+    start, ball = {"x": 3.0, "y": 0.0, "phi": 0.0, "v": 0.0}, {"x": 1.0, "y": 0.0, "phi": 0.0, "v": 0.0}
+    given = beside(ring, [approach, DRIBBLE], [start, ball, {**GOAL, "y": 1.5}])
+    failure = asserted(replace(given, library={action.name: action for action in (go, approach, DRIBBLE)}))
+    assert isinstance(failure, Failure)
+    assert failure.reason == "approachBall is predicted to fail even after 1 asserted subgoals"
+
+
 def test_hopeless_way_is_not_taken_for_want_of_a_better_one():
     ring = tuple((-2 + 0.45 * np.cos(a), 0.45 * np.sin(a), 0.3) for a in np.arange(8) * np.pi / 4)
     assert isinstance(asserted(beside(ring, [GO_AROUND], [START, GOAL])), Failure)
