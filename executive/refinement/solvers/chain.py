@@ -28,6 +28,7 @@ from tailor.executive.refinement.solvers.solver import Limits, Solver
 
 TURNS = 5  # checks: all subgoals, then every second one and the others, twice
 MAX_BATCHES, MAX_SINGLES = 5.5, 3  # model inputs of one check in batches: more subgoals have fewer candidates each
+MIN_SINGLES = 4  # candidates of a subgoal: the kept one, one from the whole range, and steps
 
 
 class ChainSolver(Solver):
@@ -63,7 +64,7 @@ class ChainSolver(Solver):
         n_pairs = sum(bool(len(a) and len(b)) for a, b in pairwise(blocks))
         self._paired = n_pairs > 0
         # candidates of a subgoal if its neighbours stay, and of all subgoals
-        self._n_single = min(3 * batch // 8, MAX_SINGLES * batch // (n_pairs + 1))
+        self._n_single = max(MIN_SINGLES, min(3 * batch // 8, MAX_SINGLES * batch // (n_pairs + 1)))
         each = min(batch, MAX_BATCHES * batch / max(1, n_pairs))
         self._n_candidates = max(N_ELITE + 2, int(np.sqrt(each))) if self._paired else batch // 2
         self._candidates = Candidates(objective.ranges, blocks, rng, self._seeds)

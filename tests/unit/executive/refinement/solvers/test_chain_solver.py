@@ -10,6 +10,7 @@ import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.ranges import Ranges
+from tailor.executive.refinement.objective.settings import MIN_BATCH
 from tailor.executive.refinement.solvers.chain import ChainSolver
 from tailor.executive.refinement.solvers.solver import Limits
 
@@ -112,3 +113,14 @@ def test_no_check_of_many_subgoals_takes_more_than_one_of_six(count):
         search.advance(CheckBudget(1))
         inputs.append(objective.evaluations - before)
     assert max(inputs) <= 1600
+
+
+@pytest.mark.parametrize("count", [24, 49])
+def test_the_least_batch_suffices_for_many_subgoals(count):
+    cost = Legs(6, count)
+    solver = ChainSolver(cost, np.random.default_rng(6), np.empty((0, 2 * count)), MIN_BATCH, Limits(99, 99))
+    solver.advance(CheckBudget(1))
+    first = solver.value
+    solver.advance(CheckBudget(30))
+    assert solver.value < first
+    assert solver.value == pytest.approx(float(cost(solver.best[None])[0]))
