@@ -70,7 +70,7 @@ def explain(
     sequence = sequence_of(message, library, objects)
     if sequence is None or message.horizon < 1:
         return None
-    settings = replace(settings, horizon=message.horizon)
+    settings = replace(settings, horizon=min(message.horizon, len(sequence.actions)))
     chosen = chosen_values(message)
     sequence = accepted(sequence, chosen, models, settings)
     objective = _objective(sequence, models, settings)

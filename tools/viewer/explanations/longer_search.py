@@ -36,7 +36,8 @@ def best_cost(
     sequence = sequence_of(message, library, objects)
     if sequence is None:
         raise ValueError("the library lacks an action of the sequence")
-    settings = replace(settings, horizon=message.horizon, patience=checks, checks_max=checks, **OF_ANY_GAIN)
+    horizon = min(message.horizon, len(sequence.actions))
+    settings = replace(settings, horizon=horizon, patience=checks, checks_max=checks, **OF_ANY_GAIN)
     chosen = chosen_values(message)
     search = Refinement(accepted(sequence, chosen, models, settings), models, settings, rng, start=chosen)
     search.advance(CheckBudget(checks))

@@ -196,6 +196,12 @@ def test_a_message_without_a_horizon_has_no_explanation(refined) -> None:
     assert explained(replace(message_of(*refined), horizon=0)) is None
 
 
+def test_a_horizon_beyond_the_last_action_is_explained_as_one_of_all_actions(refined) -> None:
+    message, rng = replace(message_of(*refined), horizon=10**6), np.random.default_rng(0)
+    assert explained(message).chosen_cost == explained(message_of(*refined)).chosen_cost
+    assert best_cost(message, LIBRARY, MODELS, SETTINGS, rng, checks=5) < float("inf")
+
+
 def test_models_that_do_not_suit_the_settings_of_a_run_end_no_page(refined, monkeypatch) -> None:
     def explaining(_: Subgoals) -> None:
         raise UsageError("action drive needs the model drive/energy")
