@@ -16,7 +16,8 @@ def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
     """The sequence with the subgoal action of the action at `position` inserted before it (Algorithm 3, lines 16-20).
 
     The subgoal action starts where the action started. Its goal, the asserted subgoal, is a new label whose parameters
-    are all free in their default ranges; the action starts from there.
+    are all free in their default ranges; the action starts from there. A risk that was accepted without the subgoal no
+    longer is: the settings' limit applies.
 
     Raises:
       KeyError: The subgoal action is not in the library, or needs a quantity that the action's start does not have.
@@ -36,7 +37,7 @@ def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
     after = tuple(moved.get(i, i) if j in start_side else i for j, i in enumerate(action.variables))
     context = sequence.contexts.get(subgoal_action.name, ())
     to_subgoal = InstantiatedAction(subgoal_action, action.step, before, asserted=True, context=context)
-    pair = to_subgoal, replace(action, variables=after)
+    pair = to_subgoal, replace(action, variables=after, risk=None)
     actions = (*sequence.actions[:position], *pair, *sequence.actions[position + 1 :])
     return replace(sequence, actions=actions, variables=(*sequence.variables, *subgoal))
 

@@ -75,6 +75,16 @@ def test_refinement_puts_the_subgoal_where_success_is_predicted():
     assert MODELS.successes["goToPose/success"].probability(arguments)[0] >= 0.95
 
 
+@pytest.mark.parametrize("compare", [False, True])
+def test_action_after_a_subgoal_may_risk_less_than_one_without(compare):
+    settings = replace(SETTINGS, compare_subgoals=compare, risk_cost_s=20.0, p_fail_max=0.01, p_fail_assert=0.3)
+    result = asserted(approach(3.0, (-0.3, 0.3)), settings)
+    assert names(result) == ["goToPose", "approachBall", "dribbleBall"]
+    refinement = Refinement(result, MODELS, replace(settings, risk_cost_s=0.0), np.random.default_rng(0))
+    refinement.advance(CheckBudget(300))
+    assert refinement.choice.failure[1] <= 0.01
+
+
 def test_subgoal_does_not_count_in_the_horizon():
     result = asserted(approach(3.0, (-0.3, 0.3)))
     assert [action.action.name for action in result.within(1)] == ["goToPose", "approachBall"]
