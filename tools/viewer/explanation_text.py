@@ -37,7 +37,8 @@ def explanation_lines(explanation: Explanation, best_cost: float, decision: Deci
     for situation in explanation.situations:
         lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
     long_search = long_search_text(explanation.chosen_cost, best_cost)
-    return [*lines, long_search, certificate_text(decision.report), search_text(decision)]
+    certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost))
+    return [*lines, long_search, certified, search_text(decision)]
 
 
 def parameter_text(free: FreeParameter) -> str:
@@ -71,11 +72,21 @@ def features_text(situation: Situation) -> str:
     return f"{situation.action} features (greedy): {', '.join(values)}"
 
 
-def certificate_text(report: RefinementReport | None) -> str:
+def certified_gap_pct(report: RefinementReport | None, chosen_cost: float) -> float | None:
+    """Certified gap between a choice and the optimum of the models, in percent; None without a certificate.
+
+    The certificate is that of the best choice of the search, which is not executed if it came late and gains little.
+    """
+    if report is None or report.gap_pct < 0 or not 0 < report.best_s < math.inf or not math.isfinite(chosen_cost):
+        return None
+    return max(0.0, 100 * (chosen_cost / report.best_s * (1 + report.gap_pct / 100) - 1))
+
+
+def certificate_text(gap_pct: float | None) -> str:
     """Certified gap between the refined choice and the optimum of the models."""
-    if report is None or report.gap_pct < 0:
+    if gap_pct is None:
         return "not certified: no bound on the models' optimum"
-    return f"certified: within {report.gap_pct:.1f} % of the models' optimum"
+    return f"certified: within {gap_pct:.1f} % of the models' optimum"
 
 
 def search_text(decision: Decision) -> str:

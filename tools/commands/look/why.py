@@ -22,7 +22,7 @@ from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.viewer.decisions import Decision, decisions_of, executed, in_force
 from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import duration_table, explanation_lines
+from tailor.tools.viewer.explanation_text import certified_gap_pct, duration_table, explanation_lines
 from tailor.tools.viewer.explanations.explanation import Explanation
 from tailor.tools.viewer.recorded_messages import timed
 
@@ -133,6 +133,9 @@ def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
         if explained.explanation is None
         else [situation.rule for situation in explained.explanation.situations],
         "best_cost": number(explained.best_cost),
+        "certified_gap_pct": None
+        if explained.explanation is None
+        else certified_gap_pct(report, explained.explanation.chosen_cost),
         "search": None
         if report is None
         else {

@@ -9,7 +9,7 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.tools.commands.look import why
 from tailor.tools.viewer.decisions import decisions_of, executed, in_force
-from tailor.tools.viewer.explanation_text import certificate_text
+from tailor.tools.viewer.explanation_text import certificate_text, certified_gap_pct
 from tailor.tools.viewer.recorded_messages import Timed
 from tests.support import synthetic_run
 
@@ -66,8 +66,16 @@ def test_a_later_certificate_belongs_to_the_decision_and_adds_no_deliberation_ti
     (decision,) = log.decisions
     assert decision.report.gap_pct == 0.8
     assert decision.ticks == 1
-    assert certificate_text(decision.report) == "certified: within 0.8 % of the models' optimum"
-    assert "not certified" in certificate_text(report(5, 20))
+    assert certificate_text(certified_gap_pct(decision.report, 8.5)) == "certified: within 0.8 % of the models' optimum"
+    assert "not certified" in certificate_text(certified_gap_pct(report(5, 20), 8.5))
+
+
+def test_a_choice_that_is_not_the_best_of_its_search_is_certified_for_what_it_costs_more() -> None:
+    certificate = dataclasses.replace(report(5, 20, 8.0), gap_pct=1.0)
+    assert certified_gap_pct(certificate, 8.4) == pytest.approx(100 * (1.05 * 1.01 - 1))
+    assert certified_gap_pct(certificate, float("inf")) is None
+    assert certified_gap_pct(dataclasses.replace(certificate, best_s=0.0), 8.4) is None
+    assert certified_gap_pct(None, 8.4) is None
 
 
 def test_a_new_search_does_not_count_for_the_old_decision() -> None:
