@@ -16,7 +16,6 @@ from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.explanations.explanation import accepted, chosen_values, sequence_of
 
 CHECKS = 1500  # live, a decision has some 100 to 300
-OF_ANY_GAIN = {"gain_min_s": 0.0, "gain_k_std": 0.0}  # otherwise the search for the greedy choice takes all checks
 
 
 def best_cost(
@@ -37,7 +36,8 @@ def best_cost(
     if sequence is None:
         raise ValueError("the library lacks an action of the sequence")
     horizon = min(message.horizon, len(sequence.actions))
-    settings = replace(settings, horizon=horizon, patience=checks, checks_max=checks, **OF_ANY_GAIN)
+    settings = replace(settings, horizon=horizon, patience=checks, checks_max=checks)
+    settings = replace(settings, gain_min_s=0.0, gain_k_std=0.0)  # otherwise the greedy search takes all checks
     chosen = chosen_values(message)
     search = Refinement(accepted(sequence, chosen, models, settings), models, settings, rng, start=chosen)
     search.advance(CheckBudget(checks))
