@@ -33,7 +33,8 @@ def check_output(flag: str, output: Path, suffixes: Sequence[str]) -> None:
 def whole_output(output: Path) -> Iterator[Path]:
     """Path to write to in the block, at whose end the file takes its place, its folder made: whole, or not at all.
 
-    What ends the block, as a full disk or Ctrl-C, leaves a file of that name as it was.
+    What ends the block, as a full disk or Ctrl-C, leaves a file of that name as it was. A device or a pipe is written
+    to as it is, never replaced by a file.
 
     Raises:
       UsageError: The file cannot be written.
@@ -44,6 +45,9 @@ def whole_output(output: Path) -> Iterator[Path]:
         raise UsageError(f"{output}: is read-only, expected a file that can be written")
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
+        if place.exists() and not place.is_file():
+            yield place
+            return
         yield temporary
         temporary.replace(place)
     except OSError as error:

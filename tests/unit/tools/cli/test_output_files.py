@@ -79,3 +79,14 @@ def test_a_read_only_file_is_kept(tmp_path, monkeypatch):
     with pytest.raises(UsageError, match="is read-only"), whole_output(output):
         pytest.fail("it was to be written")
     assert output.read_bytes() == b"mine"
+
+
+def test_a_device_is_written_to_and_not_replaced_by_a_file(tmp_path):
+    """Root may rename over /dev/null, as through a link that ends in .html."""
+    link = tmp_path / "page.html"
+    link.symlink_to(os.devnull)
+    with whole_output(link) as whole:
+        whole.write_text("page")
+    assert whole == Path(os.devnull)
+    assert whole.is_char_device()
+    assert list(tmp_path.iterdir()) == [link]
