@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from mcap import records as r
 
+from tailor.runtime.recordings.mcap.channel_table import Declaration
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
@@ -18,6 +19,7 @@ from tailor.schemas.typesystem import definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
 LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
+UNDECLARED = Declaration(0, "", "", None, ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +33,7 @@ class Recorded:
     log_ns: int  # wall time of reception
     publish_ns: int  # sender's wall time
     data: bytes  # CDR
+    declared: Declaration = field(default=UNDECLARED, compare=False, repr=False)  # its channel
 
 
 class Recording:
@@ -43,7 +46,7 @@ class Recording:
     def messages(self) -> Iterator[Recorded]:
         """All messages in file order, which is the order of reception; damaged parts are skipped, see `damage`."""
         schemas: dict[int, Any] = {0: None}
-        channels: dict[int, tuple[str, str, str]] = {}
+        channels: dict[int, tuple[str, str, str, Declaration]] = {}
         self.damage = DamageReport()
         for record in scan(self.path, self.damage):
             if isinstance(record, r.Message):
@@ -57,7 +60,8 @@ class Recording:
                 self._check_schema(record, schema)
                 key = record.metadata.get("key") or record.topic.strip("/")
                 sender = record.metadata.get("sender", "")
-                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "")
+                declared = _declaration(record, schema)
+                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "", declared)
 
     def decoded(self) -> Iterator[tuple[Recorded, Message | Rejected]]:
         """Messages of Tailor's types with their values; others are skipped."""
@@ -96,9 +100,14 @@ def open_recording(path: str | Path) -> Recording:
     return recording
 
 
-def _recorded(record: Any, key: str, name: str, sender: str) -> Recorded:
+def _declaration(channel: Any, schema: Any) -> Declaration:
+    declared = None if schema is None else (schema.name, schema.encoding, schema.data)
+    return Declaration(channel.id, channel.topic, channel.message_encoding, declared, tuple(channel.metadata.items()))
+
+
+def _recorded(record: Any, key: str, name: str, sender: str, declared: Declaration) -> Recorded:
     publish_ns = min(record.publish_time, LATEST_NS)
-    return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data)
+    return Recorded(key, name, sender, record.sequence, record.log_time, publish_ns, record.data, declared)
 
 
 def _normalized(text: str) -> str:

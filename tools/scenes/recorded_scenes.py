@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from tailor.runtime.bus.attachment import Origin, pack
-from tailor.runtime.bus.encoding import encoding_named, encoding_of
+from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.copying import utf8_name
 from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
@@ -26,7 +26,7 @@ SENDER = "5c" * 16
 
 
 def add_scenes(source: Path, target: Path) -> tuple[int, SceneFeed, DamageReport]:
-    """Copy a recording and add the scenes of its run; markers and transforms in it are replaced.
+    """Copy a recording and add the scenes of its run; markers, transforms and log in it are replaced.
 
     Returns:
       Number of messages added, the feed that made them, and the damage of the source, which the copy's metadata states.
@@ -55,7 +55,8 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
     for recorded in recording.messages():
         if recorded.ros_type in DERIVED:
             continue
-        _add(writer, _raw(recorded), recorded.log_ns)
+        sent = (recorded.log_ns, recorded.data, recorded.publish_ns, recorded.sequence)
+        _check(writer.copy(recorded.key, recorded.declared, sent), writer, recorded.key)
         message = _decoded(recorded) if feed.wants(recorded.key) else None
         made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if message is not None else []
         for topic, each in made:
@@ -63,19 +64,14 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
             added[key] += 1
             origin = pack(Origin(added[key], min(recorded.log_ns, LATEST_NS), SENDER))
             raw = Raw(key, encode(each), origin, encoding_of(type(each)), True, None)
-            _add(writer, raw, recorded.log_ns)
+            _check(writer.write(raw, recorded.log_ns), writer, key)
         if writer.is_full and not writer.flush():
             raise UsageError(f"{writer.path}: {writer.disk_error}")
 
 
-def _add(writer: McapWriter, raw: Raw, wall_ns: int) -> None:
-    if not writer.write(raw, wall_ns):
-        raise UsageError(f"{writer.path}: no room for {raw.key}, expected at most {MAX_KEYS} keys, scenes included")
-
-
-def _raw(recorded: Recorded) -> Raw:
-    origin = pack(Origin(recorded.sequence, recorded.publish_ns, recorded.sender)) if recorded.sender else None
-    return Raw(recorded.key, recorded.data, origin, encoding_named(recorded.ros_type), True, None)
+def _check(written: bool, writer: McapWriter, key: str) -> None:
+    if not written:
+        raise UsageError(f"{writer.path}: no room for {key}, expected at most {MAX_KEYS} keys, scenes included")
 
 
 def _decoded(recorded: Recorded) -> Message | None:

@@ -15,7 +15,7 @@ from mcap.writer import CompressionType, IndexType, Writer
 
 from tailor.runtime.bus.attachment import UNSIGNED, Origin, unpack
 from tailor.runtime.bus.inbox import Raw
-from tailor.runtime.recordings.mcap.channel_table import ChannelTable
+from tailor.runtime.recordings.mcap.channel_table import ChannelTable, Declaration
 from tailor.runtime.recordings.mcap.chunk_index_spool import ChunkIndexSpool
 from tailor.runtime.recordings.mcap.sink import SLOW, BackgroundSink, Sink
 from tailor.schemas.errors import Rejected
@@ -24,6 +24,7 @@ from tailor.schemas.topics import TOPICS
 CHUNK_BYTES = 131_072  # small enough that a damaged chunk loses little, large enough to compress well
 # For small files that are read from front to back: one chunk, no index, no repeated records. Half the size.
 COMPACT = {"chunk_size": 8_000_000, "index_types": IndexType.NONE, "repeat_channels": False, "repeat_schemas": False}
+Sent = tuple[int, bytes, int, int]  # log time (ns), data, publish time (ns), sequence
 STUCK_BYTES = 16_000_000  # of data waiting for the disk; then messages are dropped
 
 
@@ -90,15 +91,22 @@ class McapWriter:
         unpacked = unpack(raw.attachment)
         origin: Origin = UNSIGNED if isinstance(unpacked, Rejected) else unpacked
         channel = self._channels.channel(raw, origin.sender)
+        publish_ns = origin.source_ns if origin.source_ns > 0 else wall_ns
+        sequence = origin.sequence & 0xFFFFFFFF  # MCAP has 32 bits: 13 years at 10 Hz
+        return self._add(channel, (wall_ns, raw.payload, publish_ns, sequence))
+
+    def copy(self, key: str, declared: Declaration, sent: Sent) -> bool:
+        """Add a message of another file, its channel declared as there.
+
+        Returns:
+          False if the file has too many keys for this one; the message is then not recorded.
+        """
+        return self._add(self._channels.copied(key, declared), sent)
+
+    def _add(self, channel: int | None, sent: Sent) -> bool:
         if channel is None:
             return False
-        self._writer.add_message(
-            channel_id=channel,
-            log_time=wall_ns,
-            publish_time=origin.source_ns if origin.source_ns > 0 else wall_ns,
-            sequence=origin.sequence & 0xFFFFFFFF,  # MCAP has 32 bits: 13 years at 10 Hz
-            data=raw.payload,
-        )
+        self._writer.add_message(channel, *sent)
         self.messages += 1
         return True
 
