@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.writing.measures import pen_m
 from tailor.tools.writing.writing_track import WritingTrack
 
@@ -84,5 +85,5 @@ def _finish(figure: Figure, axes: Any, lines: LineCollection, path: Path, grid: 
         axis.spines[["top", "right"]].set_visible(False)
         axis.grid(alpha=0.2)
     figure.colorbar(lines, ax=axes, label="joint speed (rad/s)", shrink=0.6, aspect=30, pad=0.01)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=130)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=130)

@@ -17,7 +17,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.cli.endpoint import configure_bus, open_bus
-from tailor.tools.cli.output_files import check_output
+from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.conformance import report as reports
 from tailor.tools.conformance.bench import Bench, NotPossible
 from tailor.tools.conformance.clause import Verdict
@@ -81,7 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(reports.values(report)))
     if arguments.report is not None:
-        arguments.report.write_text(reports.markdown(report), encoding="utf-8")
+        with whole_output(arguments.report) as whole:
+            whole.write_text(reports.markdown(report), encoding="utf-8")
     return 0 if report.kept and not (report.misfits or report.not_compared) else 1
 
 

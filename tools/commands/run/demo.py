@@ -19,6 +19,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.track import Track
 from tailor.tools.launch.hosting import private_bus
@@ -83,13 +84,15 @@ def _write(tracks: Sequence[Track], folder: Path) -> None:
     """The page of both runs, and the paper's kind of picture."""
     from tailor.tools.figures.paths import draw_paths
 
-    draw_paths(list(tracks), folder / "paths.png")
+    with whole_output(folder / "paths.png") as picture:
+        draw_paths(list(tracks), picture)
     runs = {
         track.title: recorded_events(folder / f"{name}.mcap", RunTimeline(Explainer()))
         for track, (name, _) in zip(tracks, RUNS, strict=True)
     }
     page = side_by_side("The same plan, executed twice", gain(tracks), runs)
-    (folder / "index.html").write_text(page, encoding="utf-8")
+    with whole_output(folder / "index.html") as whole:
+        whole.write_text(page, encoding="utf-8")
 
 
 def next_lines(folder: Path) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.assertion.subgoal_map import Array, SubgoalMap
 from tailor.tools.figures.paths import corners, draw_side_by_side
 from tailor.tools.figures.track import Track
@@ -43,8 +44,8 @@ def draw_subgoal_map(ground: SubgoalMap, action: str, tracks: Sequence[Track], t
     _map(figure, axes[1, 0], ground, tracks[0], ground.success, "predicted success, there and from there", "RdYlGn")
     axes[1, 0].contour(ground.x, ground.y, ground.success, levels=[1 - ground.limit], colors="black", linewidths=1)
     draw_side_by_side(axes[1, 1:], tracks)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=100)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=100)
 
 
 def _mark_least(axis: Any, ground: SubgoalMap) -> None:

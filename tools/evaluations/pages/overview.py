@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.pages.column_titles import column_title
 from tailor.tools.evaluations.pages.report import shown
 from tailor.tools.figures.report_page import page, table
@@ -54,9 +55,9 @@ def write_overview(folder: Path, names: Sequence[str]) -> Path:
     body = [_section(folder, name) for name in there]
     if missing:
         body.append(f"<p>Not run: {html.escape(', '.join(missing))}.</p>")
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / "index.html"
-    path.write_text(page("Tailor: evaluations", body), encoding="utf-8")
+    with whole_output(path) as whole:
+        whole.write_text(page("Tailor: evaluations", body), encoding="utf-8")
     return path
 
 

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.tools.cli.output_files import whole_output
+
 INK, ACCENT, PALE = "#2c3e50", "#2f8f6b", "#b8c4cc"
 
 
@@ -51,8 +53,8 @@ def draw_shares(row: dict[str, Any], path: Path) -> Path:
 
 
 def _saved(figure: Figure, path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=110)
     return path
 
 

@@ -16,6 +16,7 @@ from rich.table import Table
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import processes
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.pages.column_titles import column_title
 from tailor.tools.figures.report_page import image, page, table
 from tailor.tools.parallel.cluster import configure_cluster
@@ -72,11 +73,12 @@ def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
         body = [table(report.title, *_tabled(report.rows))]
         body += [f"<p>{html.escape(remark)}</p>" for remark in report.remarks]
         body += [image(path, description) for description, path in report.plots.items()]
-        figures, unfinished = folder / f"{report.name}.json", folder / f"{report.name}.json.tmp"
+        figures = folder / f"{report.name}.json"
         figures.unlink(missing_ok=True)  # of an older page, which would pass for this one
-        (folder / f"{report.name}.html").write_text(page(report.title, body), encoding="utf-8")
-        unfinished.write_text(text + "\n", encoding="utf-8")
-        unfinished.replace(figures)  # last and at once: marks a complete page
+        with whole_output(folder / f"{report.name}.html") as whole:
+            whole.write_text(page(report.title, body), encoding="utf-8")
+        with whole_output(figures) as whole:  # last and at once: marks a complete page
+            whole.write_text(text + "\n", encoding="utf-8")
 
 
 def _with_seeds(report: Report) -> Report:

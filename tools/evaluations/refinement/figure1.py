@@ -15,6 +15,7 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare
@@ -139,6 +140,7 @@ def _draw(found: Found, seeds: Sequence[int], folder: Path) -> dict[str, Path]:
     for seed in seeds:
         path = folder / f"figure1-{seed}.png"
         tracks = [replace(found[name, seed].track, title=f"{name} (h = {horizon})") for name, horizon in MODES]
-        draw_paths(tracks, path)
+        with whole_output(path) as whole:
+            draw_paths(tracks, whole)
         plots[f"paths, greedy and refined, start {seed}"] = path
     return plots

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.refinement.sweep import Array, Sweep
 from tailor.tools.figures.paths import draw_side_by_side
 from tailor.tools.figures.signed_degrees import count_both_ways
@@ -36,8 +37,8 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
     top.legend(*polar[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     top.suptitle(f"seconds over the heading at the ball; speed there {sweep.v:.2f} m/s; start {sweep.seed}")
     draw_side_by_side(bottom.subplots(1, len(tracks)), tracks)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=110)
 
 
 def _draw(axis: Any, sweep: Sweep, number: int) -> None:

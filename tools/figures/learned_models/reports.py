@@ -10,6 +10,8 @@ import matplotlib as mpl
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.tools.cli.output_files import whole_output
+
 mpl.use("Agg")
 from matplotlib import pyplot as plt
 
@@ -51,7 +53,7 @@ def _panels(count: int) -> tuple[Any, Any]:
 
 
 def _saved(figure: Any, path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
+    with whole_output(path) as whole:
+        figure.savefig(whole, dpi=110)
     plt.close(figure)
     return path

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import resource
 from contextlib import contextmanager
 from pathlib import Path
+from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli import output_files
 from tailor.tools.cli.output_files import whole_output
+from tailor.tools.commands.drivers import check_driver
+from tailor.tools.commands.run import demo
+from tailor.tools.conformance.report import Report as DriverReport
+from tailor.tools.evaluations.pages import overview, plots
+from tailor.tools.evaluations.pages.report import Report, publish_report
+from tailor.tools.figures import letters
+from tailor.tools.figures.learned_models import reports
+from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.main import main
+from tailor.tools.writing.writing_track import WritingTrack
 
 GOLDEN = str(Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap")
 CHOICES = GOLDEN.replace("approach", "approach-dribble")
@@ -50,6 +62,45 @@ def test_a_full_disk_is_named_in_one_line_and_takes_no_file_of_the_user(words, n
         assert main([*words, str(tmp_path if words[-1] == "--out" else output)]) == 2
     lines = capsys.readouterr().err.splitlines()
     assert [line for line in lines if f"{output}: File too large, expected a file that can be written" in line]
+    assert output.read_bytes() == b"the former one"
+    assert list(tmp_path.iterdir()) == [output]
+
+
+def letter():
+    ways = np.zeros((3, 2))
+    times = np.arange(3.0)
+    return WritingTrack("hand", "T", "achieved", times, ways, ways, ways, times, times, 0.0)
+
+
+def checked(report, monkeypatch):
+    """Check a driver that is not there, with all it does on the bus left out."""
+    for name in ("open_bus", "LiveLink", "Bench", "_check_free"):
+        monkeypatch.setattr(check_driver, name, lambda *_: MagicMock())
+    monkeypatch.setattr(check_driver, "_is_simulator", lambda *_: True)
+    monkeypatch.setattr(check_driver, "_checked", lambda *_: DriverReport("agilo" * 300, "simulator", ()))
+    parser = argparse.ArgumentParser()
+    check_driver.configure(parser)
+    check_driver.run(parser.parse_args(["agilo", "--report", str(report)]))
+
+
+WRITERS = {
+    "letters": ("x.png", lambda path, _: letters.draw_letters([[letter()]], path)),
+    "bars": ("x.png", lambda path, _: reports.bars(path, ["a"], [1.0], [[0.5, 1.5]])),
+    "pairs": ("x.png", lambda path, _: plots.draw_pairs([2.0, 3.0], [1.0, 2.0], path)),
+    "report": ("t.html", lambda path, _: publish_report(Report("t", "T", (), ["long"], {}, {}), True, path.parent)),
+    "overview": ("index.html", lambda path, _: overview.write_overview(path.parent, ["table1"] * 200)),
+    "demo": ("paths.png", lambda path, _: demo._write([recorded_track("greedy", Path(GOLDEN))] * 2, path.parent)),
+    "check-driver": ("x.md", checked),
+}
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_pages_and_figures_of_evaluations_demo_and_drivers_are_whole_or_as_they_were(writer, tmp_path, monkeypatch):
+    name, write = WRITERS[writer]
+    output = tmp_path / name
+    output.write_bytes(b"the former one")
+    with small_disk(500), pytest.raises(UsageError, match=rf"{name}: File too large"):
+        write(output, monkeypatch)
     assert output.read_bytes() == b"the former one"
     assert list(tmp_path.iterdir()) == [output]
 
