@@ -10,6 +10,7 @@ from pathlib import Path
 from tailor.schemas.errors import UsageError
 
 CHECKSUMS = "SHA256SUMS"
+MAX_BYTES = 10_000_000  # of a list that is read whole: more than 50,000 files
 NAME = re.compile(r"(?:\w[\w.-]*/)*\w[\w.-]*")  # such paths stay inside of the folder
 LINE = re.compile(rf"([0-9a-f]{{64}})  ({NAME.pattern})")
 
@@ -35,9 +36,11 @@ def checked_files(folder: Path, kind: str) -> list[Path]:
       kind: "model" or "dataset", for errors.
 
     Raises:
-      UsageError: There is no list, a file is missing or differs, or the list is none or of the other kind.
+      UsageError: There is no list, a file is missing or differs, or the list is none, too large or of the other kind.
     """
     try:
+        if (size := (folder / CHECKSUMS).stat().st_size) > MAX_BYTES:
+            raise UsageError(f"{CHECKSUMS} has {size} bytes, expected at most {MAX_BYTES}")
         lines = (folder / CHECKSUMS).read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError):
         raise UsageError(f"there is no {CHECKSUMS}, expected what `tailor models push` wrote") from None

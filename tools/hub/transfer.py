@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.executive.composition import required_ranges
-from tailor.models.cards.card import card_path
+from tailor.models.cards.card import card_path, read_bytes
 from tailor.models.cards.checks import check_place, check_ranges
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
@@ -27,6 +27,8 @@ from tailor.tools.hub.client import download, upload
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
 from tailor.tools.hub.place import Place
 from tailor.tools.learning.target_zoo import target_zoo
+
+MAX_MANIFEST_BYTES = 10_000_000  # of what is read whole: one of thousands of recordings has less than 1 MB
 
 
 def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:
@@ -83,8 +85,8 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
     """Get data sets and put them into a folder; returns their folders there.
 
     Raises:
-      UsageError: Nothing there, a file differs from its checksum, or the folder has a data set of that name, or
-        something else, which `replace` does not remove.
+      UsageError: Nothing there, a file differs from its checksum, a manifest is damaged or too large, or the folder
+        has a data set of that name, or something else, which `replace` does not remove.
     """
     with _temporary_beside(data) as temporary:
         files = _fetched(place, "dataset", revision, DATA_FILES, temporary)
@@ -93,6 +95,7 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
             raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
         with _errors_of(place, temporary):
             for name in names:
+                read_bytes(temporary / name / MANIFEST, MAX_MANIFEST_BYTES)
                 read_manifest(temporary / name)
         existing = [data / name for name in names if os.path.lexists(data / name)]
         _refuse([path for path in existing if not replace])

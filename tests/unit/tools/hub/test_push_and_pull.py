@@ -302,6 +302,18 @@ def test_a_list_of_checksums_names_no_file_outside_of_its_folder(folder, capsys)
     assert "no list of checksums" in refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
 
 
+def test_what_a_pull_reads_whole_has_a_limit(folder, tmp_path, capsys):
+    """Cards and models had one; the list and the manifests of a hostile place went into memory whole."""
+    data = data_sets(tmp_path / "data")
+    os.truncate(data / "go" / "manifest.json", 11_000_000)
+    write_checksums(data, [file.relative_to(data) for file in data.rglob("*") if file.is_file()])
+    line = refused(capsys, "pull", "--data", "theirs", "--from", "./data")
+    assert "data/go/manifest.json: has 11000000 bytes, expected at most 10000000" in line
+    os.truncate(folder / "SHA256SUMS", 12_000_000)
+    line = refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
+    assert "pushed: SHA256SUMS has 12000000 bytes, expected at most 10000000" in line
+
+
 def test_a_refused_pull_leaves_no_folders(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert "no such folder" in refused(capsys, "pull", "--from", "./nothing", "--zoo", "new/zoo")
