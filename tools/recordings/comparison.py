@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from tailor.schemas.messages import ActionFinished, ExecStatus, JointCommand, Pl
 from tailor.schemas.messages.message import Message
 from tailor.schemas.reason_text import result_text
 from tailor.schemas.topics import TOPICS
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
 
@@ -43,13 +45,16 @@ class ComparedRun:
 
 
 def compared_run(path: Path) -> ComparedRun:
-    """First run in a recording; a damaged file is warned of.
+    """First run in a recording; a damaged file and further runs are warned of.
 
     Raises:
       UsageError: The file is not a recording, holds no run, or a message of the run is damaged.
     """
     runs = RecordedRuns(path)
     warn(path, runs.damage)
+    if (count := len(runs.runs)) > 1:
+        compared = f"the first one, of executive {runs.runs[0].sender[:8]}, is compared"
+        print(f"{plain(path.name)} holds {count} runs: {compared}", file=sys.stderr)
     try:
         return _compared(path.stem, runs.runs[0])
     except UsageError as error:

@@ -155,6 +155,17 @@ def test_the_rest_of_a_damaged_run_does_not_pass_for_the_run_in_a_comparison(tmp
     json.loads(captured.out)
 
 
+def test_a_comparison_tells_that_a_file_holds_further_runs(tmp_path, capsys):
+    script = Script(tmp_path / "two.mcap")
+    for number, sender in enumerate((EXECUTIVE, "ef" * 16)):
+        script.say(number, "exec/tick", replace(example(TickReport), tick=1), sender)
+    both, one = script.close(), a_run(tmp_path / "one.mcap")
+    main(["compare", both, one, "--json"])
+    captured = capsys.readouterr()
+    assert captured.err == f"two.mcap holds 2 runs: the first one, of executive {EXECUTIVE[:8]}, is compared\n"
+    json.loads(captured.out)
+
+
 def test_gaps_between_unsigned_messages_are_no_loss():
     """Other recorders number the messages of all senders together."""
     for sender, lost in ((DRIVER, 7), ("", 0)):
