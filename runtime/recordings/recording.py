@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -63,11 +63,11 @@ class Recording:
                 declared = _declaration(record, schema)
                 channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "", declared)
 
-    def decoded(self) -> Iterator[tuple[Recorded, Message | Rejected]]:
-        """Messages of Tailor's types with their values; others are skipped."""
+    def decoded(self, kinds: Collection[type] | None = None) -> Iterator[tuple[Recorded, Message | Rejected]]:
+        """Messages of these types, by default of all that Tailor has, with their values; others are skipped."""
         for recorded in self.messages():
             kind = type_of(recorded.ros_type)
-            if kind is not None:
+            if kind is not None and (kinds is None or kind in kinds):
                 yield recorded, decode(kind, recorded.data)
 
     def metadata(self) -> list[tuple[str, dict[str, str]]]:

@@ -65,6 +65,7 @@ class Track:
 
 
 LATE_NS = 50_000_000  # half a period
+READ = (ExecStatus, ActionFinished, Subgoals, TickReport, *TRUTH_TYPES)  # types that a track is made of
 
 
 def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track:

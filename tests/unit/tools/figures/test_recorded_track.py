@@ -1,0 +1,27 @@
+"""Tracks out of recordings, read as they go."""
+
+from pathlib import Path
+
+import pytest
+
+from tailor.runtime.recordings import recording
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import Provenance
+from tailor.tools.figures.recorded_track import recorded_track
+from tailor.tools.figures.track import READ, track_of
+
+GOLDEN = Path(__file__).parents[3] / "data" / "golden"
+
+
+@pytest.mark.parametrize(("name", "domain"), [("soccer-approach-dribble", "soccer"), ("arm-word-I", "arm")])
+def test_a_track_decodes_only_what_it_is_made_of(name, domain, monkeypatch):
+    """A recording of hours went into memory, every message decoded: most are of no use to it."""
+    path, decoded = GOLDEN / f"{name}.mcap", set()
+    everything = [each for _, each in recording.open_recording(path).decoded() if not isinstance(each, Rejected)]
+    decode = recording.decode
+    monkeypatch.setattr(recording, "decode", lambda kind, data: decoded.add(kind) or decode(kind, data))
+    track = recorded_track("t", path)
+    monkeypatch.undo()
+    assert track == track_of("t", everything, domain)
+    assert decoded <= {Provenance, *READ}
+    assert {type(each) for each in everything} - decoded
