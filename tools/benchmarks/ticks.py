@@ -111,9 +111,9 @@ def _row(recording: Path, min_ticks: int = 1) -> list[str]:
         elif isinstance(message, TickReport):
             reports.append(message)
             newest = [
-                percepts.get((key, number), 0)
-                for key, number in zip(message.input_keys, message.input_sequences, strict=True)
-                if key.endswith(("/odom", "/pose"))
+                percepts[named]
+                for named in zip(message.input_keys, message.input_sequences, strict=True)
+                if named[0].endswith(("/odom", "/pose")) and named in percepts  # the recorder may have lost it
             ]
             if message.stamp_ns in sent and newest:
                 delays.append((sent[message.stamp_ns] - max(newest)) / 1e6)

@@ -132,6 +132,21 @@ def test_ticks_of_a_run_without_commands_have_measured_nothing(monkeypatch):
         ticks._row("nowhere.mcap")
 
 
+def test_a_tick_whose_percepts_were_not_recorded_has_no_delay(monkeypatch):
+    """It had one since the first moment of the clock, 50 years in a live run."""
+    messages = list(open_recording(GOLDEN).decoded())
+    tick = next(m for _, m in messages if type(m).__name__ == "TickReport" and m.tick == 20)
+    lost = set(zip(tick.input_keys, tick.input_sequences, strict=True))
+
+    class Lossy:
+        def decoded(self):
+            return iter([pair for pair in messages if (pair[0].key, pair[0].sequence) not in lost])
+
+    monkeypatch.setattr(ticks, "open_recording", lambda path: Lossy())
+    largest_ms = float(ticks._row("somewhere.mcap")[-1].split(" / ")[-1])
+    assert largest_ms < 1000
+
+
 @pytest.mark.promise("P55")
 def test_a_system_that_hardly_ran_has_measured_nothing():
     whole = len([m for _, m in open_recording(GOLDEN).decoded() if type(m).__name__ == "TickReport"])
