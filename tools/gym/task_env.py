@@ -34,6 +34,7 @@ from tailor.tools.lockstep.worlds import events_of, make_world
 
 PERIOD_S = PERIOD_NS * 1e-9
 MAX_DRAWS = 10
+MAX_WAIT_S = 90.0  # simulated, for the first action of a draw; before the episode, and no part of its limit
 
 
 class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
@@ -60,7 +61,7 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           domain: Name of an installed domain.
           scenario: One of its scenarios; empty: the first.
           zoo: Folder of action models; empty: those of the robot's package.
-          limit_s: Time limit of an episode, simulated seconds, above 0.
+          limit_s: Time limit of an episode, simulated seconds from its first action on, above 0.
           checks: Budget of the deliberation in each step, at least 1; fewer are faster to simulate, more refine better.
 
         Raises:
@@ -107,7 +108,7 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
             drawn = int(self.np_random.integers(2**31))
             drawn = drawn if given is None else int(given)
             self._begin(drawn)
-            while not self._over() and self._state.task.running is None and self._tick * PERIOD_S < self._limit_s:
+            while not self._over() and self._state.task.running is None and self._tick * PERIOD_S < MAX_WAIT_S:
                 self._next_tick(self._state.command)
             if self._state.task.running is not None:
                 self._begun = self._tick

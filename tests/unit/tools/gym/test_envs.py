@@ -116,6 +116,17 @@ def test_standing_still_ends_at_the_time_limit(env_id):
     assert total == pytest.approx(-2.0)
 
 
+def test_a_short_limit_does_not_bound_the_wait_for_the_first_action():
+    """It ended in "no action starts": the first of soccer starts after 1.4 s."""
+    env = make("tailor/soccer-v0", limit_s=1.0)
+    env.reset(seed=1)
+    steps, over = 0, False
+    while not over:
+        *_, over, _ = env.step(np.zeros(env.action_space.shape))
+        steps += 1
+    assert steps == 10
+
+
 def test_a_failure_costs_the_rest_of_the_time_limit():
     env = make("tailor-action/kitchen-v0", action="goToPose")
     env.reset(seed=0)
