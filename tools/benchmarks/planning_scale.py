@@ -114,12 +114,15 @@ def run(console: Console, quick: bool) -> None:
     table = Table(title="planning: n cups from table to table; steps, CPU s to the first plan", box=None)
     for column in ("cups", *ENGINES, *OTHERS, "VHPOP 2.2.1"):
         table.add_column(column, justify="right")
+    missing = [name for name in OTHERS if find_spec(name) is None]
     for row in rows(quick):
-        cells = [row[name] for name in (*ENGINES, *OTHERS)]
-        shown = ["no plan" if cell is None else f"{cell[0]} steps, {cell[1]:.3f} s" for cell in cells]
+        cells = ["-" if name in missing else _cell(row[name]) for name in (*ENGINES, *OTHERS)]
         original = f"{row['vhpop']} plans" if row["vhpop"] else f"none of {POCL_LIMIT} plans"
-        table.add_row(str(row["cups"]), *shown, original)
+        table.add_row(str(row["cups"]), *cells, original)
     console.print(table)
-    for name in OTHERS:
-        if find_spec(name) is None:
-            console.print(f"{name} is not installed: not measured")
+    for name in missing:
+        console.print(f"{name} is not installed: not measured")
+
+
+def _cell(found: tuple[int, float] | None) -> str:
+    return "no plan" if found is None else f"{found[0]} steps, {found[1]:.3f} s"
