@@ -6,8 +6,9 @@ MCAP numbers channels with 16 bits, and each takes memory until the file is clos
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from tailor.runtime.bus.encoding import named_type
@@ -51,36 +52,38 @@ class ChannelTable:
         Senders beyond MAX_SENDERS of a key share one channel, whose metadata names no sender.
         """
         kind = _type_name(raw)
-        known = self._channels.get((raw.key, kind, sender))
-        return self._new(raw.key, kind, sender, _declaration(raw.key, kind, sender)) if known is None else known
+        named = raw.key, kind, sender
+        known = self._channels.get(named)
+        return self._new(*named, partial(_declaration, *named)) if known is None else known
 
     def copied(self, key: str, declared: Declaration) -> int | None:
         """Id of the channel of a message of another file, declared as there, within the limits of `channel`."""
         kind = (declared.encoding, declared.schema)
         known = self._channels.get((key, kind, declared))
-        return self._new(key, kind, declared, declared) if known is None else known
+        return self._new(key, kind, declared, lambda: declared) if known is None else known
 
-    def _new(self, key: str, kind: Hashable, sender: Hashable, declared: Declaration) -> int | None:
-        """Id of the channel of a sender that has none of its own yet."""
+    def _new(self, key: str, kind: Hashable, sender: Hashable, declare: Callable[[], Declaration]) -> int | None:
+        """Id of the channel of a sender that has none of its own yet; mixed ones come here with each message."""
         if key not in self._keys:
             if len(self._keys) >= MAX_KEYS:
                 return None
             self._keys.add(key)
-        shared = self._shared.get((key, kind))
         if self._senders[key, kind] < MAX_SENDERS and len(self._channels) < MAX_CHANNELS:
             self._senders[key, kind] += 1
-            channel = self._channels[key, kind, sender] = self._register(declared, dict(declared.metadata))
+            channel = self._channels[key, kind, sender] = self._register(declare(), {})
             return channel
+        shared = self._shared.get((key, kind))
         if shared is None:
             if len(self._shared) >= MAX_SHARED:
                 return None
-            entries = {**dict(declared.metadata), "key": key, "sender": "", "mixed": MIXED}
-            shared = self._shared[key, kind] = self._register(declared, entries)
+            mixed = {"key": key, "sender": "", "mixed": MIXED}
+            shared = self._shared[key, kind] = self._register(declare(), mixed)
         self.mixed[key] += 1
         return shared
 
-    def _register(self, declared: Declaration, entries: dict[str, str]) -> int:
+    def _register(self, declared: Declaration, changes: dict[str, str]) -> int:
         schema = 0 if declared.schema is None else self._schema(declared.schema)
+        entries = {**dict(declared.metadata), **changes}
         return int(self._writer.register_channel(declared.topic, declared.encoding, schema, entries))
 
     def _schema(self, schema: tuple[str, str, bytes]) -> int:
