@@ -81,7 +81,7 @@ def part(spec: DomainSpec, field: str) -> Any:
     except (ImportError, AttributeError, SyntaxError) as error:
         raise UsageError(f"domain {spec.name}: {field} = '{written}': {error}") from error
     except (Exception, SystemExit) as error:  # code of a package, which hinders only those who name it
-        raise UsageError(f"domain {spec.name}: {field} = '{written}': {_raised(error)}") from error
+        raise UsageError(f"domain {spec.name}: {field} = '{written}': {raised_text(error)}") from error
 
 
 def instance(spec: DomainSpec, field: str) -> Any:
@@ -96,13 +96,13 @@ def instance(spec: DomainSpec, field: str) -> Any:
     except UsageError:
         raise
     except (Exception, SystemExit) as error:
-        raise UsageError(f"domain {spec.name}: {field} = '{getattr(spec, field)}': {_raised(error)}") from error
+        raise UsageError(f"domain {spec.name}: {field} = '{getattr(spec, field)}': {raised_text(error)}") from error
 
 
-def _raised(error: BaseException) -> str:
-    """What a package raised, and the line that raised it."""
+def raised_text(error: BaseException) -> str:
+    """What the code of a package raised, and the line that raised it, in one line for people."""
     line = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} ({Path(line.filename).name}, line {line.lineno})"
+    return f"{type(error).__name__}: {' '.join(str(error).split())} ({Path(line.filename).name}, line {line.lineno})"
 
 
 def file(spec: DomainSpec, field: str) -> Traversable:

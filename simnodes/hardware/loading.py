@@ -7,10 +7,10 @@ import math
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from traceback import extract_tb
 from types import ModuleType
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import raised_text
 from tailor.simnodes.hardware.interface import Hardware
 
 POSITIVE = ("write_hz", "open_s", "read_s", "write_s")  # of a Hardware
@@ -49,8 +49,7 @@ def _cause(error: Exception) -> str:
     text = " ".join(str(error).split())
     if text and isinstance(error, ImportError | AttributeError | OSError | SyntaxError | ValueError):
         return text
-    *_, frame = extract_tb(error.__traceback__)
-    return f"{type(error).__name__}: {text} ({Path(frame.filename).name}, line {frame.lineno})"
+    return raised_text(error)
 
 
 def _module(where: str) -> ModuleType:
