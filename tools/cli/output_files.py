@@ -45,11 +45,10 @@ def whole_output(output: Path) -> Iterator[Path]:
         raise UsageError(f"{output}: is read-only, expected a file that can be written")
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        if place.exists() and not place.is_file():
-            yield place
-            return
-        yield temporary
-        temporary.replace(place)
+        is_device = place.exists() and not place.is_file()
+        yield place if is_device else temporary
+        if not is_device:
+            temporary.replace(place)
     except OSError as error:
         raise UsageError(f"{output}: {error.strerror or error}, expected a file that can be written") from error
     finally:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +20,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.models import model_rows
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_curves
@@ -171,10 +171,8 @@ def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[st
         return known
     show(make(making), settings.json, {}, title)
     figures = _measured(making, title, settings)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_suffix(f".{os.getpid()}.tmp")
-    unfinished.write_text(json.dumps(figures))
-    unfinished.replace(path)  # an interrupted write would end every later call
+    with whole_output(path) as whole:  # an interrupted write would end every later call
+        whole.write_text(json.dumps(figures))
     return figures
 
 
