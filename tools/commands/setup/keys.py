@@ -97,9 +97,7 @@ def _new(arguments: argparse.Namespace) -> None:
     if folder.exists():
         raise UsageError(f"{folder}: exists already, expected a new name")
     try:
-        authority = Authority.of(
-            keys, now, MAX_DAYS
-        )  # no key holds longer than what signed it, so --days is not for it
+        authority = Authority.of(keys, now, MAX_DAYS)  # --days is not for it: no key outlasts what signed it
         authority.issue(folder, name, arguments.host, now, arguments.days)
         if arguments.role:
             write_role(arguments.keys, name, arguments.role)
