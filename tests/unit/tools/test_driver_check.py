@@ -140,6 +140,14 @@ def test_a_driver_is_specified_by_its_command_alone(tmp_path):
     assert driver_of(SOCCER, str(tmp_path / "driver.toml")).axes == ("v",)
 
 
+def altered(folder, line, wrong):
+    """The specification of AGILO's driver with one line changed."""
+    text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
+    assert line in text
+    (folder / "driver.toml").write_text(text.replace(line, wrong))
+    return folder / "driver.toml"
+
+
 @pytest.mark.parametrize(
     ("line", "wrong", "expected"),
     [
@@ -151,12 +159,10 @@ def test_a_driver_is_specified_by_its_command_alone(tmp_path):
     ],
 )
 def test_what_nobody_would_read_in_a_specification_is_refused(tmp_path, line, wrong, expected):
-    text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
-    assert line in text
-    (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
+    file = altered(tmp_path, line, wrong)
     with pytest.raises(UsageError) as caught:
-        driver_of(SOCCER, str(tmp_path / "driver.toml"))
-    assert str(caught.value).startswith(f"{tmp_path / 'driver.toml'}: {expected}")
+        driver_of(SOCCER, str(file))
+    assert str(caught.value).startswith(f"{file}: {expected}")
     assert "\n" not in str(caught.value)
 
 
@@ -173,8 +179,5 @@ def test_what_nobody_would_read_in_a_specification_is_refused(tmp_path, line, wr
     ],
 )
 def test_a_specification_that_would_disable_the_guard_is_refused(tmp_path, line, wrong, expected):
-    text = resources.files("tailor.simnodes").joinpath("agilo", "driver.toml").read_text()
-    assert line in text
-    (tmp_path / "driver.toml").write_text(text.replace(line, wrong))
     with pytest.raises(UsageError, match=expected):
-        driver_of(SOCCER, str(tmp_path / "driver.toml"))
+        driver_of(SOCCER, str(altered(tmp_path, line, wrong)))
