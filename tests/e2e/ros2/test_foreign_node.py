@@ -7,9 +7,11 @@ import pytest
 from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas import codec
 from tailor.schemas import messages as m
-from tailor.schemas.ros2.profiles import KeyProfile
+from tailor.schemas.ros2.profiles import KeyProfile, ros_topic
+from tailor.schemas.topics import TOPICS
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
+from tests.support.ros2.routing import goal_client, wait_for_subscriber
 
 sdk = pytest.importorskip("zenoh_ros2_sdk")
 node = pytest.importorskip("tests.support.ros2.sdk")
@@ -18,12 +20,17 @@ ODOMETRY = m.Odometry(1_500_000_000, 1.0, 2.0, 0.5, 0.1, 0.2)
 
 
 @pytest.fixture(scope="module")
-def ros(tmp_path_factory):
-    """The node's maker, and our session, on one router."""
+def endpoint():
     codec.prime()
     endpoint = free_endpoint()
+    with open_router(endpoint):
+        yield endpoint
+
+
+@pytest.fixture(scope="module")
+def ros(endpoint, tmp_path_factory):
+    """The node's maker, and our session, on one router."""
     with (
-        open_router(endpoint),
         open_client(endpoint, keys=KEYS, role="executive") as session,
         node.sdk_node(endpoint, tmp_path_factory.mktemp("definitions")) as make,
     ):
@@ -57,9 +64,10 @@ def test_it_reads_transforms_and_markers(ros):
     assert [marker.ns for marker in received["agilo/scene"][0].markers] == ["ball"]
 
 
-def test_we_read_its_pose(ros):
+def test_we_read_its_pose(ros, endpoint):
     make, session = ros
     inbox = session.inbox(["pose"], "agilo")
+    wait_for_subscriber(endpoint, ros_topic(TOPICS["pose"], "agilo").key(KEYS.domain))
     publisher = make(sdk.ROS2Publisher, "/agilo/pose", "geometry_msgs/msg/PoseWithCovarianceStamped")
     publish_pose(publisher, 1.5, -2.0)
     (sample,) = wait_until(inbox.drain)
@@ -78,9 +86,10 @@ def publish_pose(publisher, x, y):
     publisher.publish(header=node.value("std_msgs/msg/Header", stamp=stamp, frame_id="map"), pose=spread)
 
 
-def test_its_estop_is_latched(ros):
+def test_its_estop_is_latched(ros, endpoint):
     make, session = ros
     inbox = session.inbox(["estop"], "agilo")
+    wait_for_subscriber(endpoint, ros_topic(TOPICS["estop"], "agilo").key(KEYS.domain))
     make(sdk.ROS2Publisher, "/estop", "std_msgs/msg/Bool").publish(data=True)
     (sample,) = wait_until(inbox.drain)
     assert sample.message == m.EStop(True)
@@ -92,9 +101,11 @@ def goal_server(session):
 
 
 @pytest.mark.parametrize(("goal", "answer"), [("(atball pos3)", (True, "accepted")), ("(bad", (False, "no goal"))])
-def test_its_call_of_the_service_is_answered(ros, goal, answer):
+def test_its_call_of_the_service_is_answered(ros, endpoint, goal, answer):
     make, session = ros
     server = goal_server(session)
+    with goal_client(endpoint, KEYS.domain):
+        pass  # the router knows the server
     client = make(sdk.ROS2ServiceClient, "/exec/set_goal", "tailor_msgs/srv/SetGoal")
     answered = []
     client.call_async(answered.append, goal=goal)

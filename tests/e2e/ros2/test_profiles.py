@@ -1,10 +1,8 @@
 """Sessions under the keys of rmw_zenoh on a real router: data, tokens, copies, services, recordings."""
 
 import time
-from contextlib import contextmanager
 
 import pytest
-import zenoh
 
 from tailor.runtime.bus.attachment import Origin, pack, unpack
 from tailor.runtime.bus.opening import open_client
@@ -17,18 +15,12 @@ from tailor.schemas.ros2.graph import Kind, parsed_token
 from tailor.schemas.ros2.profiles import KeyProfile, ros_topic
 from tailor.schemas.topics import TOPICS
 from tests.support.patience import wait_until
+from tests.support.ros2.routing import goal_client, stranger, wait_for_subscriber
 
 ODOMETRY = Odometry(0, 1.0, 2.0, 0.5, 0.1, 0.2)
 ROS, BOTH = KeyProfile("rmw_zenoh", 7), KeyProfile("both", 7)
 ODOM, ESTOP = (ros_topic(TOPICS[name], "agilo").key(7) for name in ("odom", "estop"))
 STRANGER = "ab" * 16
-
-
-@contextmanager
-def node(endpoint):
-    """A node of ROS 2 as zenoh sees it: keys, bytes and attachments, nothing of ours."""
-    with zenoh.open(zenoh.Config.from_json5(client([endpoint]))) as session:
-        yield session
 
 
 def both_matched(publisher):
@@ -45,7 +37,7 @@ def announced(session):
 
 @pytest.mark.parametrize("keys", [ROS, BOTH])
 def test_a_node_of_ros_and_a_session_hear_each_other(endpoint, keys):
-    with open_client(endpoint, keys=keys) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=keys) as ours, stranger(endpoint) as theirs:
         received = theirs.declare_subscriber(ODOM)
         publisher = ours.publisher("odom", "agilo")
         wait_until(publisher.matched)  # by them: we do not listen yet
@@ -82,10 +74,10 @@ def test_under_both_profiles_each_message_arrives_once(endpoint):
 
 
 def test_a_wildcard_put_under_a_key_for_ros_is_not_accepted_as_a_command(endpoint):
-    with open_client(endpoint, keys=ROS) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=ROS) as ours, stranger(endpoint) as theirs:
         inbox = ours.inbox(["cmd_vel"], "agilo")
-        wait_until(ours.publisher("cmd_vel", "agilo").matched)
         key = ros_topic(TOPICS["cmd_vel"], "agilo").key(7)
+        wait_for_subscriber(endpoint, key)
         theirs.put(key.replace("agilo", "*"), codec.encode(VelocityCommand(0, 0.5, 0.0)))
         wait_until(lambda: inbox.drain() or inbox.rejected, "wildcard put")
         assert inbox.rejected == {("agilo/cmd_vel", "other key"): 1}
@@ -94,7 +86,7 @@ def test_a_wildcard_put_under_a_key_for_ros_is_not_accepted_as_a_command(endpoin
 @pytest.mark.parametrize("profile", ["plain", "rmw_zenoh", "both"])
 def test_an_estop_is_heard_whatever_the_profiles_of_either_side(endpoint, profile):
     keys = KeyProfile(profile, 7)
-    with open_client(endpoint, keys=keys) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=keys) as ours, stranger(endpoint) as theirs:
         heard = [theirs.declare_subscriber(key) for key in ("estop", ESTOP)]
         publisher = ours.publisher("estop", "")
         wait_until(lambda: both_matched(publisher))
@@ -108,7 +100,7 @@ def test_an_estop_is_heard_whatever_the_profiles_of_either_side(endpoint, profil
 
 
 def test_what_a_session_declares_appears_in_the_graph_and_disappears_with_it(endpoint):
-    with node(endpoint) as theirs:
+    with stranger(endpoint) as theirs:
         with open_client(endpoint, keys=ROS, role="executive") as ours:
             ours.inbox(["odom", "odom"], "agilo")
             ours.publisher("cmd_vel", "agilo")
@@ -126,7 +118,7 @@ def test_what_a_session_declares_appears_in_the_graph_and_disappears_with_it(end
 
 
 def test_the_plain_profile_is_not_part_of_the_graph(endpoint):
-    with node(endpoint) as theirs, open_client(endpoint, role="executive") as ours:
+    with stranger(endpoint) as theirs, open_client(endpoint, role="executive") as ours:
         ours.publisher("cmd_vel", "agilo")
         ours.inbox(["odom", "estop"], "agilo")
         ours.service_server("exec/goal")
@@ -135,32 +127,32 @@ def test_the_plain_profile_is_not_part_of_the_graph(endpoint):
 
 
 def test_a_goal_of_ros_is_answered_to_its_client(endpoint):
-    with open_client(endpoint, keys=ROS) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=ROS) as ours:
         server = ours.service_server("exec/goal")
-        for goal, accepted in (("(good)", True), ("(bad)", False)):
-            replies = theirs.get(
-                service.set_goal().key(7), payload=service.request(goal), attachment=pack(Origin(3, 1, STRANGER))
-            )
-            request = wait_until(server.poll)
-            assert request.text == goal
-            request.accept() if accepted else request.refuse("no such goal")
-            reply = wait_until(replies.try_recv).ok
-            expected = (True, "accepted") if accepted else (False, "no such goal")
-            assert service.result_of(reply.payload.to_bytes()) == expected
-            origin = unpack(reply.attachment.to_bytes())
-            assert (origin.sequence, origin.sender) == (3, STRANGER)
+        with goal_client(endpoint, 7) as theirs:
+            for goal, accepted in (("(good)", True), ("(bad)", False)):
+                replies = theirs.get(payload=service.request(goal), attachment=pack(Origin(3, 1, STRANGER)))
+                request = wait_until(server.poll)
+                assert request.text == goal
+                request.accept() if accepted else request.refuse("no such goal")
+                reply = wait_until(replies.try_recv).ok
+                expected = (True, "accepted") if accepted else (False, "no such goal")
+                assert service.result_of(reply.payload.to_bytes()) == expected
+                origin = unpack(reply.attachment.to_bytes())
+                assert (origin.sequence, origin.sender) == (3, STRANGER)
 
 
 def test_a_damaged_request_is_refused_and_the_next_one_served(endpoint):
-    with open_client(endpoint, keys=ROS) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=ROS) as ours:
         server = ours.service_server("exec/goal")
-        replies = theirs.get(service.set_goal().key(7), payload=b"\1")
-        reply = wait_until(lambda: None if server.poll() else replies.try_recv())
+        with goal_client(endpoint, 7) as theirs:
+            replies = theirs.get(payload=b"\1")
+            reply = wait_until(lambda: None if server.poll() else replies.try_recv())
         assert service.result_of(reply.ok.payload.to_bytes()) == (False, "the request is malformed")
 
 
 def test_a_recorded_message_is_played_under_the_keys_of_the_profile(endpoint):
-    with open_client(endpoint, keys=ROS) as ours, node(endpoint) as theirs:
+    with open_client(endpoint, keys=ROS) as ours, stranger(endpoint) as theirs:
         received = theirs.declare_subscriber(ODOM)
         player = ours.player("agilo/odom", "nav_msgs/msg/Odometry")
         wait_until(player.matched)
