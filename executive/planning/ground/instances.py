@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import TypeAlias
 
 from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
 from tailor.executive.planning.ground.ground_action import (
@@ -29,6 +30,7 @@ from tailor.executive.planning.pddl.formula_text import format_atom, format_numb
 from tailor.executive.planning.pddl.language import Action, Condition, When
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
+Conditions: TypeAlias = tuple[tuple[GroundCondition, Span], ...]
 _ZERO = Fraction(0)
 _INSTANT = (_ZERO, _ZERO)
 MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
@@ -86,7 +88,7 @@ def _span(when: When, temporal: bool) -> Span:
 
 def _conditions(
     conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
-) -> tuple[tuple[GroundCondition, Span], ...] | None:
+) -> Conditions | None:
     """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
     grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
@@ -132,13 +134,15 @@ def _without_restored(
     A delete effect whose literal the same action adds at that moment neither achieves nor threatens: add effects win,
     also those (in `stated`) that achieve nothing because a condition of the action holds up to that very moment.
     """
-    at: dict[tuple[int, int], list[GroundEffect]] = {}
+    deleted = {(effect.literal ^ 1, effect.moment) for effect in effects if effect.literal % 2}
+    failures: dict[tuple[int, int], list[list[Conditions]]] = {}
     for effect in stated:
-        at.setdefault((effect.literal, effect.moment), []).append(effect)
+        if (effect.literal, effect.moment) in deleted:
+            failures.setdefault((effect.literal, effect.moment), []).append(_failures(effect))
     kept: list[GroundEffect] = []
     restored: list[GroundEffect] = []
     for effect in effects:
-        additions = at.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+        additions = failures.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
         facts.spend(max(len(additions) - 1, 0))  # each excludes one more condition
         variants = _unless_added(effect, additions)
         kept += variants
@@ -146,23 +150,30 @@ def _without_restored(
     return tuple(kept), tuple(restored)
 
 
-def _unless_added(effect: GroundEffect, additions: list[GroundEffect]) -> list[GroundEffect]:
-    """An effect under conditions that exclude the add effects of its moment; empty if one of these always happens.
+def _failures(addition: GroundEffect) -> list[Conditions]:
+    """Each way in which an add effect does not happen; empty if it always happens.
 
-    An add effect with conditions at several moments fails if those of one moment fail: each gives one variant.
+    One with conditions at several moments fails if those of one moment fail: one way for each.
     """
-    variants = [effect.conditions]
-    for other in additions:
-        spans: dict[Span, list[GroundCondition]] = {}
-        for condition, span in other.conditions:
-            spans.setdefault(span, []).append(condition)
-        failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
-        variants = [
-            (*variant, *((part, span) for part in conjuncts(fails)))
-            for variant in variants
-            for fails, span in failures
-            if fails != FALSE
-        ]
+    spans: dict[Span, list[GroundCondition]] = {}
+    for condition, span in addition.conditions:
+        spans.setdefault(span, []).append(condition)
+    failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
+    return [tuple((part, span) for part in conjuncts(fails)) for fails, span in failures if fails != FALSE]
+
+
+def _unless_added(effect: GroundEffect, additions: list[list[Conditions]]) -> list[GroundEffect]:
+    """An effect under conditions that exclude add effects, each given by its ways to fail; empty if one always happens.
+
+    Nearly all add effects have one way: those of a delete effect beside thousands must not be copied for each of them.
+    """
+    variants = [list(effect.conditions)]
+    for ways in additions:
+        if len(ways) == 1:
+            for variant in variants:
+                variant.extend(ways[0])
+        else:
+            variants = [[*variant, *way] for variant in variants for way in ways]
         if len(variants) > MAX_VARIANTS:
             raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
-    return [effect._replace(conditions=variant) for variant in variants] if additions else [effect]
+    return [effect._replace(conditions=tuple(variant)) for variant in variants] if additions else [effect]
