@@ -8,7 +8,7 @@ import pytest
 
 from tailor.runtime.bus.opening import open_client
 from tailor.schemas.messages import ArmRequest, DriverState
-from tests.support.bus_system import driving, guarded_robot, moving, outputs, zero_at
+from tests.support.bus_system import armed_sender, driving, guarded_robot, moving, outputs, zero_at
 from tests.support.injection.tcp_proxy import tcp_proxy
 from tests.support.patience import wait_until
 from tests.support.stalls import repeat_on_stall
@@ -31,7 +31,7 @@ class Linked:
         self.arming = session.publisher("arm_request", "agilo")
         self.far_states = far.inbox(["driver"], "agilo")  # as the executive receives them
         self.executive = driving(start, proxy.endpoint, trace)
-        self.sender = wait_until(self.state, "driver").armed_sender
+        self.sender = armed_sender(self.states)
 
     def state(self):
         states = [s.message for s in self.states.drain() if isinstance(s.message, DriverState)]

@@ -103,6 +103,15 @@ def driving(start, endpoint, trace, speed=0.5):
     return executive
 
 
+def armed_sender(states):
+    """Sender that the driver obeys, from an inbox that was opened before it was armed.
+
+    Until the state is published that follows, and once a loaded machine has stopped the robot, it obeys nobody.
+    """
+    seen = wait_until(lambda: [s.message.armed_sender for s in states.drain() if s.message.armed_sender], "sender")
+    return seen[-1]
+
+
 def child_pid(parent, name):
     """Process id of the child of the launcher `parent` that runs `tailor NAME`."""
     for line in Path(f"/proc/{parent}/task/{parent}/children").read_text().split():

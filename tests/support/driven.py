@@ -6,8 +6,7 @@ from contextlib import contextmanager
 
 from tailor.runtime.processes.child import Child
 from tailor.schemas.messages import ArmRequest, DriverState
-from tests.support.bus_system import driving, moving, zero_at
-from tests.support.patience import wait_until
+from tests.support.bus_system import armed_sender, driving, moving, zero_at
 
 BURN = "while True: pass"
 
@@ -28,9 +27,9 @@ class Driven:
 
     def __init__(self, session, endpoint, start, trace):
         self.endpoint, self.trace = endpoint, trace
-        self.executive = driving(start, endpoint, trace)
         self.states, self.arming = session.inbox(["driver"], "agilo"), session.publisher("arm_request", "agilo")
-        self.sender = wait_until(lambda: [s.message.armed_sender for s in self.states.drain()], "driver")[-1]
+        self.executive = driving(start, endpoint, trace)
+        self.sender = armed_sender(self.states)
 
     def moves(self):
         """A loaded machine may stop the robot by itself, for want of commands: then people arm it again."""
