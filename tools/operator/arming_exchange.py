@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from enum import StrEnum
+from itertools import pairwise
 
 from tailor.schemas.messages import ArmRequest, DriverState
 from tailor.simnodes.driver import ARM_REFUSED
@@ -18,6 +19,7 @@ from tailor.simnodes.driver import ARM_REFUSED
 REPEAT_S = 0.1
 FRESH_S = 0.3  # age of the newest state up to which a request to arm is repeated
 SETTLE_S = 0.3  # after a refusal or a change: another request may still be under way
+IN_A_ROW = 3  # states of one start before a request to arm; of two drivers at 10 Hz each come two at most
 WAIT_S = 5.0  # for the driver's first state, and for the confirmation
 
 
@@ -30,6 +32,7 @@ class Outcome(StrEnum):
     NO_CONFIRMATION = "no confirmation"
     NOT_SENT = "not sent"
     NO_DRIVER = "no driver"
+    SEVERAL_DRIVERS = "several drivers"
 
 
 class Exchange:
@@ -42,12 +45,13 @@ class Exchange:
     """
 
     def __init__(self, request: ArmRequest, now_s: float) -> None:
-        """`request`: with epoch 0; a request to arm is sent for the start of the driver that is heard first."""
+        """`request`: with epoch 0; a request to arm is sent for the start of the driver that is heard before it."""
         self.state: DriverState | None = None
         self.refusal = ""
         self.matched = False
         self._request = request
         self._before: DriverState | None = None  # newest state before the first request
+        self._epochs: list[int] = []  # of the states before the first request
         self._heard = 0  # states since the first request
         self._heard_s = now_s
         self._first_s: float | None = None  # of the first request
@@ -61,6 +65,7 @@ class Exchange:
         before = self._first_s is None or at_s <= self._first_s
         if self._before is None or self._first_s is None:
             self._before = state if before else self._before
+            self._epochs.append(state.epoch)
         elif self._request.arm:
             self.refusal = self.refusal or _refused(self._before, state)
             if self.refusal or _situation(state) != _situation(self._before):
@@ -79,6 +84,8 @@ class Exchange:
         if request.arm:
             if self._before is None or self._halted_s is not None or now_s - self._heard_s > FRESH_S:
                 return None
+            if len(self._epochs) < IN_A_ROW or len(set(self._epochs[-IN_A_ROW:])) > 1:
+                return None
             request = replace(request, epoch=self._before.epoch)
         if self._first_s is None:
             self._first_s, self._deadline_s = now_s, now_s + WAIT_S
@@ -91,6 +98,8 @@ class Exchange:
             return Outcome.CONFIRMED
         if self._request.arm and self._halted_s is not None and now_s - self._halted_s > SETTLE_S:
             return Outcome.REFUSED if self.refusal else Outcome.CHANGED
+        if self._request.arm and self._several():
+            return Outcome.SEVERAL_DRIVERS
         if now_s < self._deadline_s:
             return None
         if self._first_s is None:
@@ -105,6 +114,11 @@ class Exchange:
         if self.state is None or self._heard == 0 or not self._is_wanted(self.state):
             return False
         return self._heard > 1 or (self._before is not None and not self._is_wanted(self._before))
+
+    def _several(self) -> bool:
+        """Whether a start was heard again after another one: a driver that starts anew is not."""
+        changes = sum(a != b for a, b in pairwise(self._epochs))
+        return changes >= len(set(self._epochs)) > 0
 
     def _is_wanted(self, state: DriverState) -> bool:
         if not self._request.arm:

@@ -76,6 +76,22 @@ def test_disarming_is_confirmed_while_the_executive_restarts(number, kills):
 
 
 @pytest.mark.promise("P52")
+def test_a_forgotten_simulator_beside_the_driver_keeps_it_from_being_armed(tmp_path):
+    with guarded_robot(tmp_path) as (session, endpoint, start, _):
+        states = session.inbox(["driver"], "agilo")
+        forgotten = start("tests.support.stand_ins.sim", endpoint, tmp_path / "trace2")
+        epochs = set()
+        wait_until(lambda: epochs.update(s.message.epoch for s in states.drain()) or len(epochs) > 1, "second driver")
+        done = arm(endpoint, "--sender", "e" * 32)
+        assert (done.returncode, done.stdout.split(",")[0]) == (1, "not sent"), (done.stdout, done.stderr)
+        assert "several drivers of agilo are on the bus" in done.stdout
+        assert {s.message.mode for s in states.drain()} == {"disarmed"}
+        forgotten.kill()
+        done = arm(endpoint, "--sender", "e" * 32)
+        assert (done.returncode, done.stdout) == (0, "agilo is armed\n"), (done.stdout, done.stderr)
+
+
+@pytest.mark.promise("P52")
 @pytest.mark.parametrize("system", [bus_system, secured_system])
 def test_no_request_is_lost_behind_another_one(system):
     """Two within a millisecond: so they reach a router that was busy, however far apart people sent them."""

@@ -23,10 +23,10 @@ ARMED, ESTOPPED = state("armed", sender=A), state("estopped", reason="e-stop")
 
 
 def exchange(request, before=None):
-    """An exchange that has heard a state at 0.9 s and has sent its first request at 1 s, if it could."""
+    """An exchange that has heard a state up to 0.9 s and has sent its first request at 1 s, if it could."""
     made = Exchange(request, 0.0)
-    if before is not None:
-        made.hear(before, 0.9)
+    for at_s in (0.7, 0.8, 0.9) if before is not None else ():
+        made.hear(before, at_s)
     made.due(1.0)
     return made
 
@@ -76,10 +76,35 @@ def test_a_change_after_the_request_confirms_at_once(mode):
 def test_a_request_to_arm_waits_for_the_driver_and_means_its_present_start():
     made = Exchange(ARM, 0.0)
     assert made.due(0.0) is None
-    made.hear(state(), 0.5)
-    assert made.due(0.5) == ArmRequest(True, False, A, 7)
-    made.hear(ARMED, 0.52)
-    assert made.outcome(0.52) is Outcome.CONFIRMED
+    made.hear(state(epoch=6), 0.4)
+    for at_s in (0.5, 0.6, 0.7):
+        assert made.due(at_s) is None, "another driver may be heard next"
+        made.hear(state(), at_s)
+    assert made.due(0.7) == ArmRequest(True, False, A, 7)
+    made.hear(ARMED, 0.72)
+    assert made.outcome(0.72) is Outcome.CONFIRMED
+
+
+@pytest.mark.parametrize("epochs", ["7878", "7887", "7788778", "878", "7987"])
+@pytest.mark.promise("P52")
+def test_none_of_several_drivers_is_armed(epochs):
+    made = Exchange(ARM, 0.0)
+    for number, epoch in enumerate(epochs):
+        assert made.outcome(0.1 * number) is None
+        made.hear(state(epoch=int(epoch)), 0.1 * number)
+        assert made.due(0.1 * number) is None
+        if made.outcome(0.1 * number) is not None:
+            break
+    assert made.outcome(0.1 * number) is Outcome.SEVERAL_DRIVERS
+
+
+@pytest.mark.promise("P52")
+def test_several_drivers_are_disarmed_at_once():
+    made = Exchange(OFF, 0.0)
+    for epoch, at_s in ((7, 0.0), (8, 0.05), (7, 0.1)):
+        made.hear(state("armed", epoch=epoch, sender=A), at_s)
+    assert made.due(0.1) == OFF
+    assert made.outcome(0.1) is None
 
 
 @pytest.mark.parametrize("other", [state("armed", sender=B), state("armed", epoch=8, sender=A), state("stopped")])

@@ -27,6 +27,7 @@ TEXTS = {
     Outcome.NO_CONFIRMATION: "sent, but not confirmed; {state}",
     Outcome.NOT_SENT: "not sent, since nobody takes requests for {robot}; {state}",
     Outcome.NO_DRIVER: "not sent; {state}",
+    Outcome.SEVERAL_DRIVERS: "not sent, since several drivers of {robot} are on the bus, expected one",
 }
 
 
