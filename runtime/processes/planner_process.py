@@ -174,7 +174,8 @@ def split_command(command: str) -> list[str]:
     if not words:
         raise _cannot_start(command, "it is empty")
     if shutil.which(words[0]) is None:
-        raise _cannot_start(command, f"there is no program '{words[0]}'")
+        reason = f"'{words[0]}' is not executable" if os.path.isfile(words[0]) else f"there is no program '{words[0]}'"
+        raise _cannot_start(command, reason)
     return words
 
 

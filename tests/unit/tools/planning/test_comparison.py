@@ -125,6 +125,12 @@ def test_without_a_plan_of_ours_the_code_is_1_and_a_missing_program_is_one_line(
     assert "there is no program 'no-such-planner'" in capsys.readouterr().err
 
 
+def test_a_program_without_the_right_to_execute_is_not_said_to_be_missing(capsys, tmp_path):
+    (tmp_path / "planner").write_text("#!/bin/sh\n")
+    assert main(["plan", *KITCHEN, "--compare", str(tmp_path / "planner")]) == 2
+    assert f"'{tmp_path / 'planner'}' is not executable" in capsys.readouterr().err
+
+
 def test_the_table_names_planners_and_verdicts(capsys):
     assert main(["plan", *KITCHEN, "--compare", printing("no plan")]) == 0
     out = capsys.readouterr().out
