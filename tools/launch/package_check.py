@@ -106,6 +106,8 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
             math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower <= parameter.upper
         ):
             yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
+        elif parameter.period == 0.0:
+            yield f"parameter '{parameter.name}' is periodic, but ranges from {parameter.lower:g} to the same"
 
 
 def _faults_of_subgoal(domain: Domain, action: Action) -> Iterator[str]:

@@ -55,6 +55,9 @@ FAULTS = {
     ),
     "occurs twice": lambda: changed(parameter={"name": domains.load("soccer").actions["goToPose"].parameters[1].name}),
     "ranges from nan to": lambda: changed(parameter={"lower": NAN}),
+    "is periodic, but ranges from 1 to the same": lambda: changed(
+        parameter={"lower": 1.0, "upper": 1.0, "periodic": True}
+    ),
 }
 
 
