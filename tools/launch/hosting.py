@@ -17,6 +17,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
+BY_CERTIFICATES = ("tls/", "quic/")  # protocols that need keys
 GATEWAY_SILENCE_NS = 5_000_000_000  # of its main loop; floods keep only zenoh's threads busy
 
 
@@ -25,17 +26,10 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
     """The router's own session; start `gateways` beside it.
 
     Raises:
-      UsageError: The bus runs already, an endpoint is in use or malformed, or the keys for other machines are missing.
+      UsageError: The bus runs already, an endpoint is in use, malformed or of no use there, or the keys for other
+        machines are missing.
     """
-    for endpoint in _endpoints(settings):
-        _check_free(endpoint)
-    if settings.remote and not settings.remote.startswith("tls/"):
-        raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
-    if settings.remote and settings.security == "open":
-        raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
-    if settings.remote:  # found missing here, not by a gateway beside a robot that drives already
-        identity_in(f"{settings.keys}/{ROUTER}")
-        registered_roles(settings.keys)
+    _check(settings)
     if settings.security == "open":
         report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
     secured, keys = settings.security != "open", settings.key_profile
@@ -53,6 +47,29 @@ def gateways(settings: BusSettings) -> list[ProcessSpec]:
         remote = ("--listen", settings.remote, "--keys", settings.keys)
         specs.append(ProcessSpec("remote gateway", tailor("gateway", *name, *remote), silence_ns=GATEWAY_SILENCE_NS))
     return specs
+
+
+def check_own_endpoint(settings: BusSettings) -> None:
+    """Raise UsageError if a bus cannot listen by passwords at the endpoint that names it."""
+    if settings.security != "local" and settings.endpoint.startswith(BY_CERTIFICATES):
+        raise UsageError(
+            f"bus endpoint {settings.endpoint}: who connects there has a password, expected tcp/HOST:PORT; "
+            "--secure tls/HOST:PORT lets other machines in by keys"
+        )
+
+
+def _check(settings: BusSettings) -> None:
+    """Refuse here what a gateway would end by, beside a robot that drives already."""
+    check_own_endpoint(settings)
+    for endpoint in _endpoints(settings):
+        _check_free(endpoint)
+    if settings.remote and not settings.remote.startswith("tls/"):
+        raise UsageError(f"bus endpoint {settings.remote}: expected tls/HOST:PORT for other machines")
+    if settings.remote and settings.security == "open":
+        raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
+    if settings.remote:
+        identity_in(f"{settings.keys}/{ROUTER}")
+        registered_roles(settings.keys)
 
 
 def _endpoints(settings: BusSettings) -> list[str]:

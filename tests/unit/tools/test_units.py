@@ -210,6 +210,7 @@ def parsed(*arguments):
         (("--user", "robot", "--driver-command", "drive"), "--driver-command drive: expected the absolute path"),
         (("--user", "robot", "--driver-command", "'x"), "--driver-command 'x: No closing quotation"),
         (("--user", "robot", "--connect", "tcp"), "bus endpoint 'tcp': expected PROTOCOL/HOST:PORT"),
+        (("--user", "robot", "--connect", "tls/host:7447"), "tls/host:7447: who connects there has a password"),
         (("--user", "robot", "--key", "k"), "--key k: a key has one role, expected one part that connects"),
         (("--user", "robot", "--record", "nowhere"), "--record 'nowhere': expected a folder that exists"),
         (("--user", "robot", "--driver-command", "/bin/sh 'a\nb'"), "expected text that a unit file can hold"),
@@ -230,7 +231,7 @@ def test_an_argument_arrives_as_it_is(argument):
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
-@pytest.mark.parametrize("flags", [(), ("--driver-command", "/bin/sh -c 'sleep 1'"), ("--connect", "tls/host:7447")])
+@pytest.mark.parametrize("flags", [(), ("--driver-command", "/bin/sh -c 'sleep 1'"), ("--connect", "tcp/host:7447")])
 def test_systemd_accepts_the_files(tmp_path, flags):
     record = tmp_path / "100% of my $HOME"
     record.mkdir()

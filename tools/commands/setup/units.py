@@ -24,6 +24,7 @@ from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.cli.system_flags import deployment_from
 from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.hosting import check_own_endpoint
 from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files
 
 SYSTEMD = ("/etc/systemd", "/run/systemd", "/usr/lib/systemd", "/usr/local/lib/systemd")  # units that this machine runs
@@ -88,6 +89,8 @@ def _config(arguments: argparse.Namespace) -> UnitsConfig:
 def _bus(arguments: argparse.Namespace, parts: tuple[str, ...]) -> BusSettings:
     settings = with_hosting_flags(bus_settings(arguments), arguments)
     check_endpoint(settings.endpoint)
+    if "bus" in parts:
+        check_own_endpoint(settings)
     if settings.key and ("bus" in parts or len(parts) > 1):
         raise UsageError(f"--key {settings.key}: a key has one role, expected one part that connects, see --parts")
     key, keys = (_absolute(path) if path else "" for path in (settings.key, settings.keys))

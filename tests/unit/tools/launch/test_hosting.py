@@ -70,3 +70,18 @@ def test_other_machines_are_let_in_with_tls_alone(opened):
     with pytest.raises(UsageError, match="expected tls/HOST:PORT for other machines"), hosted_bus(settings, print):
         pass
     assert opened == []
+
+
+@pytest.mark.parametrize("protocol", ["tls", "quic"])
+@pytest.mark.parametrize("security", ["run", "open"])
+def test_a_bus_whose_gateway_would_need_certificates_for_its_own_endpoint_is_refused(opened, protocol, security):
+    """The gateway would end, and a robot drive without it."""
+    settings = BusSettings(free_endpoint().replace("tcp/", f"{protocol}/"), security=security)
+    with pytest.raises(UsageError, match=f"endpoint {protocol}/.* expected tcp/HOST:PORT"), hosted_bus(settings, print):
+        pass
+    assert opened == []
+
+
+def test_the_endpoint_of_a_bus_without_a_port_is_but_a_name(opened):
+    with hosted_bus(BusSettings("tls/127.0.0.1:7447", security="local"), print):
+        assert opened == [("tls/127.0.0.1:7447", True)]
