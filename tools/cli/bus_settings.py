@@ -58,6 +58,13 @@ def configure_hosting(parser: argparse.ArgumentParser) -> None:
 
 
 def with_hosting_flags(settings: BusSettings, arguments: argparse.Namespace) -> BusSettings:
-    """Settings overridden by the flags of `configure_hosting`."""
+    """Settings overridden by the flags of `configure_hosting`.
+
+    Raises:
+      UsageError: Keys are named, and the bus would let in nobody who has one.
+    """
     given = {"remote": arguments.secure, "keys": arguments.keys, "security": arguments.security}
-    return replace(settings, **{name: value for name, value in given.items() if value is not None})
+    merged = replace(settings, **{name: value for name, value in given.items() if value is not None})
+    if arguments.keys is not None and not merged.remote:
+        raise UsageError(f"--keys {arguments.keys}: expected with --secure, which lets other machines in by them")
+    return merged

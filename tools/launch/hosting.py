@@ -61,6 +61,8 @@ def check_own_endpoint(settings: BusSettings) -> None:
 def _check(settings: BusSettings) -> None:
     """Refuse here what a gateway would end by, beside a robot that drives already."""
     check_own_endpoint(settings)
+    if settings.key:
+        raise UsageError(f"key {settings.key}: of a bus on another machine, expected none where the bus itself runs")
     for endpoint in _endpoints(settings):
         _check_free(endpoint)
     if settings.remote and not settings.remote.startswith("tls/"):

@@ -211,6 +211,7 @@ def parsed(*arguments):
         (("--user", "robot", "--driver-command", "'x"), "--driver-command 'x: No closing quotation"),
         (("--user", "robot", "--connect", "tcp"), "bus endpoint 'tcp': expected PROTOCOL/HOST:PORT"),
         (("--user", "robot", "--connect", "tls/host:7447"), "tls/host:7447: who connects there has a password"),
+        (("--user", "robot", "--keys", "k"), "--keys k: expected with --secure"),
         (("--user", "robot", "--key", "k"), "--key k: a key has one role, expected one part that connects"),
         (("--user", "robot", "--record", "nowhere"), "--record 'nowhere': expected a folder that exists"),
         (("--user", "robot", "--driver-command", "/bin/sh 'a\nb'"), "expected text that a unit file can hold"),

@@ -6,6 +6,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.launch import hosting
 from tailor.tools.launch.hosting import free_endpoint, gateways, hosted_bus, private_bus
+from tailor.tools.main import main
 
 S = 1_000_000_000
 
@@ -85,3 +86,15 @@ def test_a_bus_whose_gateway_would_need_certificates_for_its_own_endpoint_is_ref
 def test_the_endpoint_of_a_bus_without_a_port_is_but_a_name(opened):
     with hosted_bus(BusSettings("tls/127.0.0.1:7447", security="local"), print):
         assert opened == [("tls/127.0.0.1:7447", True)]
+
+
+def test_a_key_of_another_machine_is_refused_where_the_bus_runs(opened):
+    with pytest.raises(UsageError, match="key operator: of a bus on another machine"):
+        hosted_bus(BusSettings(free_endpoint(), key="operator"), print).__enter__()
+    assert opened == []
+
+
+def test_keys_without_an_endpoint_for_other_machines_are_refused(opened, capsys):
+    assert main(["bus", "--connect", free_endpoint(), "--keys", "robots"]) == 2
+    assert "--keys robots: expected with --secure" in capsys.readouterr().err
+    assert opened == []
