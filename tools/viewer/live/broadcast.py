@@ -50,6 +50,10 @@ class Subscription:
             return None
 
 
+class TooManyPagesError(Exception):
+    """As many pages are connected as may be."""
+
+
 class EventBroadcast:
     """Keeps the events of a run and passes new ones to all pages. Thread-safe."""
 
@@ -103,9 +107,18 @@ class EventBroadcast:
                 page.close()
 
     @contextmanager
-    def subscribe(self) -> Iterator[Subscription]:
-        """Connect a page for the duration of the context; its first batch holds all kept events."""
+    def subscribe(self, most: int | None = None) -> Iterator[Subscription]:
+        """Connect a page for the duration of the context; its first batch holds all kept events.
+
+        Args:
+          most: Pages at a time; None: any number.
+
+        Raises:
+          TooManyPagesError: So many are connected already.
+        """
         with self._lock:
+            if most is not None and len(self._pages) >= most:
+                raise TooManyPagesError
             page = Subscription(encoded(self._events))
             self._pages.add(page)
         try:

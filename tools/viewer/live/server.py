@@ -15,7 +15,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.broadcast import EventBroadcast, Subscription, TooManyPagesError
 from tailor.tools.viewer.live.stop_endpoint import PATH as STOP
 from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 
@@ -75,8 +75,6 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(404)
         elif self.headers.get("Sec-Fetch-Site", "same-origin") not in ("same-origin", "none"):
             self.send_error(HTTPStatus.FORBIDDEN)  # pages of other sites would take the places of ours
-        elif self.broadcast.pages >= MAX_PAGES:
-            self.send_error(503, "too many pages")
         else:
             self._send_events()
 
@@ -114,20 +112,26 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def _send_events(self) -> None:
-        self.send_response(200)
-        self.send_header("Content-Type", "text/event-stream")
-        self.send_header("Cache-Control", "no-store")
-        self.end_headers()
         self.close_connection = True
         if sys.platform == "linux":  # of this thread alone
             os.nice(NICENESS)
         try:
+            with self.broadcast.subscribe(MAX_PAGES) as page:
+                self._send_batches(page)
+        except TooManyPagesError:
+            self.send_error(503, "too many pages")
+
+    def _send_batches(self, page: Subscription) -> None:
+        self.send_response(200)
+        self.send_header("Content-Type", "text/event-stream")
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        try:
             token = {"stop": self.stop.token if self.stop else ""}  # a page outlives its server, and a token does not
             self._send(f"retry: {RETRY_MS}\nevent: reset\ndata: {json.dumps(token)}\n\n")
-            with self.broadcast.subscribe() as page:
-                while not page.lost:
-                    batch = page.next(BEAT_S)
-                    self._send(":\n\n" if batch is None else f"event: rows\ndata: {batch}\n\n")
+            while not page.lost:
+                batch = page.next(BEAT_S)
+                self._send(":\n\n" if batch is None else f"event: rows\ndata: {batch}\n\n")
         except OSError:
             return  # the page closed the connection
 

@@ -6,7 +6,9 @@ import http.client
 import json
 import socket
 import struct
+import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 import pytest
@@ -185,6 +187,17 @@ def test_too_many_pages_are_refused(monkeypatch) -> None:
         next(lines)
         next_events(lines)
         assert get(port, "/events") == 503
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there is the priority of a thread lowered")
+def test_of_pages_that_connect_at_once_no_more_are_taken_than_may_be(monkeypatch) -> None:
+    """A browser that opens all its pages again leaves a connection for the stop button."""
+    monkeypatch.setattr(server, "MAX_PAGES", 1)
+    both = threading.Barrier(2)
+    monkeypatch.setattr(server.os, "nice", lambda _: both.wait(PATIENCE_S))
+    with serving("page", EventBroadcast(), 0) as port, ThreadPoolExecutor(2) as pages:
+        answers = pages.map(lambda _: get(port, "/events"), range(2))
+        assert sorted(answers) == [200, 503]
 
 
 def test_a_port_in_use_is_an_error_of_one_line() -> None:
