@@ -13,16 +13,21 @@ TIMES_MS = {"period": 100, "budget": 60, "end": 80}
 
 
 def run_facts(provenance: str) -> Fields:
-    """Facts of the page from the JSON of a `Provenance` message; missing ones are left out."""
+    """Facts of the page from the JSON of a `Provenance` message; missing ones and those of other types are left out."""
     config = _table(_loads(provenance).get("config"))
     settings = _table(config.get("settings"))
     facts = {
-        "domain": config.get("domain"),
-        "scenario": config.get("scenario"),
-        "seed": settings.get("seed"),
-        "horizon": _table(settings.get("refinement")).get("horizon"),
+        "domain": _of_type(str, config.get("domain")),
+        "scenario": _of_type(str, config.get("scenario")),
+        "seed": _of_type(int, settings.get("seed")),
+        "horizon": _of_type(int, _table(settings.get("refinement")).get("horizon")),
     }
     return {"times": TIMES_MS} | {k: v for k, v in facts.items() if v not in (None, "")} | _domain(facts["domain"])
+
+
+def _of_type(kind: type, value: Any) -> Any:
+    """The value; None if it is of another type, such as NaN, which Python reads from JSON and no page would."""
+    return value if isinstance(value, kind) else None
 
 
 def _domain(name: Any) -> Fields:

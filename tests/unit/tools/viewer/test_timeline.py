@@ -159,3 +159,14 @@ Goal     :
           1   -> (atball pos3)
 orderings = { 2<1 1<3 2<3 }
 """
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, [math.nan], {"a": math.nan}])
+@pytest.mark.parametrize("path", [("scenario",), ("domain",), ("settings", "seed"), ("settings", "refinement")])
+def test_a_page_can_carry_the_facts_of_any_provenance(path: tuple[str, ...], value: object) -> None:
+    """Python reads NaN from JSON, and no page does: a stranger's message would end the page of all."""
+    config = {"horizon": value} if path[-1] == "refinement" else value
+    for name in reversed(path):
+        config = {name: config}
+    [event] = RunTimeline().events_of(0.0, "exec/provenance", m.Provenance(0, json.dumps({"config": config})))
+    json.dumps(event.json_value(), allow_nan=False)
