@@ -79,6 +79,7 @@ def refused(*arguments):
         (("sim", "agilo", "--leave", "zz"), "--leave zz: expected 32 hex digits"),
         (("driver", "nowhere.toml", "--leave", "zz"), "--leave zz: expected 32 hex digits"),
         (("up", "arm", "--letters", "A", "--scenario", "letter-T"), "--letters: expected without --scenario"),
+        (("executive", "soccer", "--goal", ""), "--goal is empty, expected a PDDL goal"),
         (("executive", "soccer", "--goal", "(", "--wait"), "--goal: expected without --wait"),
         (("goal", " "), "the goal is empty, expected a PDDL goal"),
     ],

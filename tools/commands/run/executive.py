@@ -104,6 +104,8 @@ def _advice(state: State, robot: str) -> str:
 def _goal(context: Context, arguments: argparse.Namespace) -> str:
     if arguments.wait and arguments.goal is not None:
         raise UsageError("--goal: expected without --wait, which starts without a goal")
+    if arguments.goal is not None and not arguments.goal.strip():
+        raise UsageError("--goal is empty, expected a PDDL goal, or no --goal for the goal of the scenario")
     if arguments.wait:
         return ""
     goal: str = arguments.goal or context.problem.goal_text
