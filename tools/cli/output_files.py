@@ -29,6 +29,17 @@ def check_output(flag: str, output: Path, suffixes: Sequence[str]) -> None:
         raise UsageError(f"{flag} {output}: is a folder, expected a file")
 
 
+def beside(recording: Path, ending: str) -> Path:
+    """The file that is made of a recording unless another one is named: run-scene.mcap beside run.mcap.
+
+    Raises:
+      UsageError: The recording is a folder, beside which no file has its name.
+    """
+    if recording.is_dir():
+        raise UsageError(f"{recording}: Is a directory, expected a recording")
+    return recording.with_name(f"{recording.stem}{ending}")
+
+
 @contextmanager
 def whole_output(output: Path) -> Iterator[Path]:
     """Path to write to in the block, at whose end the file takes its place, its folder made: whole, or not at all.

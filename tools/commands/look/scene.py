@@ -23,7 +23,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
 from tailor.tools.cli.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
-from tailor.tools.cli.output_files import check_output, whole_output
+from tailor.tools.cli.output_files import beside, check_output, whole_output
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _write(arguments: argparse.Namespace) -> int:
     source: Path = arguments.recording
-    target: Path = arguments.output or source.with_name(f"{source.stem}-scene.mcap")
+    target: Path = arguments.output or beside(source, "-scene.mcap")
     with Console(stderr=True).status(f"reading {source}"):
         added, feed, damage = add_scenes(source, target)
     warn(source, damage)

@@ -12,7 +12,7 @@ from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.endpoint import configure_bus, refuse_bus_flags
-from tailor.tools.cli.output_files import check_output, whole_output
+from tailor.tools.cli.output_files import beside, check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
@@ -76,7 +76,8 @@ def _write(arguments: argparse.Namespace) -> int:
     [first, *others] = recordings
     if repeated := next((path for path in recordings if recordings.count(path) > 1), None):
         raise UsageError(f"{repeated} is there twice, expected each recording once")
-    output: Path = arguments.output or (first.with_name("runs.html") if others else first.with_suffix(".html"))
+    page_of_first = beside(first, ".html")
+    output: Path = arguments.output or (page_of_first.with_name("runs.html") if others else page_of_first)
     check_output("--output", output, (".html", ".htm"))
     with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
         runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}

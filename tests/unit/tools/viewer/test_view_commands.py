@@ -194,6 +194,14 @@ def test_a_file_that_is_no_recording_is_refused_by_name(command, tmp_path) -> No
         run(command, nothing)
 
 
+@pytest.mark.parametrize("command", [view, scene, why])
+@pytest.mark.parametrize("folder", [".", "/", ""])
+def test_a_folder_is_no_recording(command, folder) -> None:
+    """Some have no name, beside which the output would be."""
+    with pytest.raises(UsageError, match=r"[./]: Is a directory, expected a recording"):
+        run(command, folder)
+
+
 def test_why_refuses_a_time_before_any_decision(recording) -> None:
     with pytest.raises(UsageError, match=r"no decision before 0\.1 s"):
         run(why, recording, "--at", 0.1)
