@@ -11,6 +11,7 @@ from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_files import check_writable
 from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.package_check import check_package
@@ -132,6 +133,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(
             "--resume skips evaluations whose page is in the report's folder, expected --report DIR with it"
         )
+    if chosen and (folder := chosen[0][2].report) is not None:  # all take the same flags
+        check_writable("--report", folder / "index.html")  # not after hours
     for domain in {settings.domain for *_, settings in chosen if settings.domain}:
         check_package(domain)  # not in the midst of it, by a traceback
     with working_on(chosen[0][2].on if chosen else None, _work_of(chosen)):

@@ -84,6 +84,13 @@ def test_a_package_at_fault_is_refused_before_anything_runs(monkeypatch, capsys)
     assert capsys.readouterr().err == f"tailor evaluate: {expected}"
 
 
+def test_a_report_that_cannot_be_written_is_refused_before_anything_runs(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["evaluate", "all", "--report", str(tmp_path / "file")]) == 2
+    assert f"--report {tmp_path}/file/index.html: File exists, expected a file" in capsys.readouterr().err
+    assert CALLS == []
+
+
 def test_resume_leaves_out_what_has_a_page(tmp_path, capsys):
     main(["evaluate", "first", "--report", str(tmp_path)])
     assert main(["evaluate", "first", "second", "--report", str(tmp_path), "--resume"]) == 1
