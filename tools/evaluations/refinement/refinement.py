@@ -80,6 +80,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     """Evaluate and publish the report; 0 if every row `is_better`."""
     named = preset or Preset()
     domain, scenarios = _scenarios(arguments, named)
+    _refuse_ignored(arguments)
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
     rows, plots = [], {}
     seeds = seeds_of(domain, arguments)
@@ -101,6 +102,14 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)
     publish_report(report, arguments.json, arguments.report)
     return 0 if all(is_better(row) for row in rows) else 1
+
+
+def _refuse_ignored(arguments: argparse.Namespace) -> None:
+    """Raise UsageError for numbers of models that are not made: the figures would pass for theirs."""
+    numbers = {"--model-episodes": arguments.model_episodes, "--model-runs": arguments.model_runs}
+    given = [flag for flag, number in numbers.items() if number is not None]
+    if given and not arguments.models:
+        raise UsageError(f"{', '.join(given)}: of the models that --models K makes, expected none without it")
 
 
 def _scenarios(arguments: argparse.Namespace, preset: Preset) -> tuple[str, list[str]]:

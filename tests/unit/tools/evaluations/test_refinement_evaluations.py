@@ -191,6 +191,16 @@ def test_unknown_scenario_is_a_usage_error(module):
         module.run(parser.parse_args(["--scenario", "chess"]))
 
 
+@pytest.mark.parametrize("flag", ["--model-episodes", "--model-runs"])
+def test_numbers_of_models_that_are_not_made_are_refused(flag, monkeypatch):
+    """The figures of those that ship would pass for theirs."""
+    monkeypatch.setattr(refinement, "rows_of", lambda *_: pytest.fail("runs"))
+    parser = argparse.ArgumentParser()
+    refinement.configure(parser)
+    with pytest.raises(UsageError, match=f"{flag}: of the models that --models K makes"):
+        refinement.run(parser.parse_args(["--domain", "soccer", "--episodes", "2", flag, "100"]))
+
+
 def test_the_row_over_models_has_an_interval_between_models():
     row = {"scenario": "soccer", "horizon": 2, "n": 100, "mean_greedy_s": 12.0, "mean_refined_s": 11.0}
     row |= {"slower_pct": 10.0, "contacts_pct_refined": 1.0}
