@@ -50,7 +50,8 @@ def configure_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zoo", default="", help="folder of action models (default: the shipped ones)")
     parser.add_argument("--seed", type=_seed, default=None, metavar="N",
                         help="first seed, for debugging (default: from the hash of source and models)")  # fmt: skip
-    parser.add_argument("--domain", default="", help="run the evaluation only if it is of this domain, e.g. soccer")
+    parser.add_argument("--domain", default="",
+                        help="domain, e.g. soccer; an evaluation of another one does not run")  # fmt: skip
 
 
 def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:

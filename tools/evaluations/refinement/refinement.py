@@ -60,7 +60,8 @@ def configure(
     parser: argparse.ArgumentParser, episodes: int = 200, horizons: Sequence[int] = (2,), oracle: int = 0
 ) -> None:
     """Flags of `tailor evaluate refinement`, and of its names for the paper's tables."""
-    parser.add_argument("--scenario", nargs="+", metavar="S", help="scenarios of the domain (default: all)")
+    parser.add_argument("--scenario", nargs="+", metavar="S",
+                        help="scenarios of the domain (default: all; of table3 and table4 the paper's)")  # fmt: skip
     parser.add_argument("--horizon", nargs="+", type=at_least(2, "--horizon"), default=list(horizons), metavar="H",
                         help="horizons of refinement, at least 2 (default %(default)s)")  # fmt: skip
     parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=episodes,
