@@ -58,12 +58,22 @@ class RecordingPart:
         """Keys and ROS types of the selected messages.
 
         Raises:
-          UsageError: No message is selected.
+          UsageError: No message is selected, or a key that is to be replaced is not in the recording.
         """
+        self._check_remap()
         channels = {(recorded.key, recorded.ros_type) for recorded in self.messages()}
         if not channels:
             raise UsageError(f"{self.recording.path}: no message of these topics and times, expected at least one")
         return channels
+
+    def _check_remap(self) -> None:
+        """Raise UsageError for a misspelt key: its messages would be published under the recorded one."""
+        keys = {recorded.key for recorded in self.recording.messages()} if self.remap else set()
+        if unknown := sorted(set(self.remap) - keys):
+            raise UsageError(
+                f"--remap {unknown[0]}={self.remap[unknown[0]]}: {self.recording.path} has no such key, expected one "
+                f"of: {', '.join(sorted(keys))}"
+            )
 
 
 class Publishers:

@@ -107,6 +107,17 @@ def test_remap_words_are_checked():
         remapping(["a/b"])
 
 
+def test_a_key_that_is_not_recorded_is_not_replaced_in_silence(tmp_path):
+    """A robot on the bus would hear the messages that were to go elsewhere."""
+    recording = open_recording(write_tape(tmp_path / "a.mcap"))
+    with pytest.raises(
+        UsageError, match=r"--remap agilo/odm=ghost/odom: .*has no such key, expected one of: agilo/odom"
+    ):
+        RecordingPart(recording, selection([], []), {"agilo/odm": "ghost/odom"}).channels()
+    part = RecordingPart(recording, selection([], []), {"agilo/odom": "ghost/odom"})
+    assert {key for key, _ in part.channels()} == {"ghost/odom"}
+
+
 def test_a_recorded_driver_appears_to_obey_the_live_executive(tmp_path):
     from dataclasses import replace
 
