@@ -75,6 +75,8 @@ def refused(*arguments):
         ),
         (("picture", "a.mcap", "-o", ""), "--output .: expected a name"),
         (("why", "a.mcap", "-o", "p.txt"), "--output p.txt: expected a name that ends in .png or .html"),
+        (("check-driver", "agilo", "--no-fit", "--top-speed"), "--top-speed: of the comparison that --no-fit leaves"),
+        (("check-driver", "agilo", "--report", "README.md/p.md"), "--report README.md/p.md: "),
         (("check-driver", "agilo", "--report", "p.txt"), "--report p.txt: expected a name that ends in .md"),
         (("sim", "agilo", "--leave", "zz"), "--leave zz: expected 32 hex digits"),
         (("driver", "nowhere.toml", "--leave", "zz"), "--leave zz: expected 32 hex digits"),

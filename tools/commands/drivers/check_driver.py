@@ -17,7 +17,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.cli.endpoint import configure_bus, open_bus
-from tailor.tools.cli.output_files import check_output, whole_output
+from tailor.tools.cli.output_files import check_output, check_writable, whole_output
 from tailor.tools.conformance import report as reports
 from tailor.tools.conformance.bench import Bench, NotPossible
 from tailor.tools.conformance.clause import Verdict
@@ -53,15 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     domain = domains.load(spec_of_robot(arguments.robot).name)
     spec = driver_of(domain, arguments.driver)
     check_driver(domain, spec)
-    if not 0.0 < arguments.speed <= MAX_FRACTION:
-        raise UsageError(f"--speed is {arguments.speed:g}, expected more than 0 and at most {MAX_FRACTION:g}")
-    known = [each.name for each in clauses()]
-    named = [each.replace(" ", "_").replace("-", "_") for each in arguments.clause]
-    unknown = sorted(set(named) - set(known))
-    if unknown:
-        raise UsageError(f"--clause {', '.join(unknown)}: expected one of: {', '.join(known)}")
-    if arguments.report is not None:
-        check_output("--report", arguments.report, (".md",))
+    named = _checked_flags(arguments)
     codec.prime()
     with open_bus(arguments, "executive") as executive, open_bus(arguments, "people") as people:
         sensors = [sensor.topic for sensor in spec.sensors]
@@ -84,6 +76,23 @@ def run(arguments: argparse.Namespace) -> int:
         with whole_output(arguments.report) as whole:
             whole.write_text(reports.markdown(report), encoding="utf-8")
     return 0 if report.kept and not (report.misfits or report.not_compared) else 1
+
+
+def _checked_flags(arguments: argparse.Namespace) -> list[str]:
+    """Names of the clauses to try; empty: all. Raises UsageError before the robot moves."""
+    if not 0.0 < arguments.speed <= MAX_FRACTION:
+        raise UsageError(f"--speed is {arguments.speed:g}, expected more than 0 and at most {MAX_FRACTION:g}")
+    known = [each.name for each in clauses()]
+    named = [each.replace(" ", "_").replace("-", "_") for each in arguments.clause]
+    unknown = sorted(set(named) - set(known))
+    if unknown:
+        raise UsageError(f"--clause {', '.join(unknown)}: expected one of: {', '.join(known)}")
+    if arguments.report is not None:
+        check_output("--report", arguments.report, (".md",))
+        check_writable("--report", arguments.report)  # not after the robot has moved
+    if arguments.no_fit and arguments.top_speed:
+        raise UsageError("--top-speed: of the comparison that --no-fit leaves out, expected one of both")
+    return named
 
 
 def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind: str) -> Report:
