@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--for",
         dest="endpoint",
         metavar="ENDPOINT",
-        help=f"also write {SESSION}, zenoh's configuration for a foreign node, e.g. a ROS 2 bridge",
+        help=f"tls/HOST:PORT: also write {SESSION}, zenoh's configuration for a foreign node, e.g. a ROS 2 bridge",
     )
     parser.add_argument("--days", type=int, default=DAYS, help="days for which the key is valid (default %(default)s)")
     parser.add_argument("--keys", metavar="DIR", default=KEYS, help="folder of the keys (default %(default)s)")
@@ -86,8 +86,8 @@ def _new(arguments: argparse.Namespace) -> None:
     name, keys = check_name(arguments.name), Path(arguments.keys)
     if (name == ROUTER) == bool(arguments.role):
         raise UsageError(f"--role: expected one for every name, but none for '{ROUTER}'")
-    if arguments.endpoint:
-        check_endpoint(arguments.endpoint)
+    if arguments.endpoint and not check_endpoint(arguments.endpoint).startswith("tls/"):
+        raise UsageError(f"--for {arguments.endpoint}: a key opens no session there, expected tls/HOST:PORT")
     for host in arguments.host:
         check_host(host)
     if not 0 < arguments.days <= MAX_DAYS:

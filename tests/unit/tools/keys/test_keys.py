@@ -136,6 +136,15 @@ def test_a_name_takes_no_place_of_a_file(tmp_path, capsys, name):
     assert not (tmp_path / "keys").exists()
 
 
+def test_no_session_is_written_for_an_endpoint_that_takes_no_keys(tmp_path, capsys):
+    """The name would be used up: none serves a second key."""
+    words = ["keys", "new", "bridge", "--role", "driver", "--keys", str(tmp_path / "keys"), "--for"]
+    assert main([*words, "tcp/robot.local:7447"]) == 2
+    assert "--for tcp/robot.local:7447: a key opens no session there" in capsys.readouterr().err
+    assert not (tmp_path / "keys").exists()
+    assert main([*words, "tls/robot.local:7448"]) == 0
+
+
 @pytest.mark.parametrize("host", ["", "a b", "robot..local", "http://robot", "10.0.0.0/8", "röbot", "-x", "x" * 64])
 def test_a_host_that_no_client_could_reach_is_refused(tmp_path, capsys, host):
     assert main(["keys", "new", "router", f"--host={host}", "--keys", str(tmp_path / "keys")]) == 2
