@@ -10,6 +10,7 @@ import select
 import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from typing import TextIO
 
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
@@ -93,8 +94,13 @@ def driver_lines(states: Mapping[str, DriverState], switch: str, silent: set[str
     return lines
 
 
-def hold_in_terminal(session: Session) -> None:
-    """Hold the switch until a key is pressed, a signal arrives, or standard input or the terminal is closed."""
+def hold_in_terminal(session: Session, output: TextIO) -> None:
+    """Hold the switch until a key is pressed, a signal arrives, or standard input or the terminal is closed.
+
+    Args:
+      session: With the bus.
+      output: Takes what people read.
+    """
     stop = stop_on_signals()
     with Keyboard() as keyboard:
 
@@ -105,8 +111,8 @@ def hold_in_terminal(session: Session) -> None:
                 keyboard.read()  # or the key would be the shell's
             return True
 
-        print(ABOUT, flush=True)
-        DeadMansSwitch(session, lambda line: print(line, flush=True)).hold(released)
+        print(ABOUT, file=output, flush=True)
+        DeadMansSwitch(session, lambda line: print(line, file=output, flush=True)).hold(released)
 
 
 def _readable() -> bool:

@@ -1,8 +1,11 @@
 """The e-stop of the command line, the page and the dead man's switch, with a bus that only counts."""
 
+import json
 import os
 import sys
 import time
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,6 +13,8 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import DriverState, EStop
+from tailor.tools.commands.run import estop
+from tailor.tools.main import main
 from tailor.tools.operator import dead_mans_switch, stop_button
 from tailor.tools.operator.dead_mans_switch import HELD, DeadMansSwitch, driver_lines
 from tailor.tools.operator.stop_button import STOP, StopButton, all_stopped, summary
@@ -143,3 +148,21 @@ def test_a_switch_is_held_only_while_standard_input_is_open_and_silent(monkeypat
             terminal.close()
         monkeypatch.setattr(sys, "stdin", None if way == "none" else terminal)
         assert dead_mans_switch._readable() is (way != "nothing to read")
+
+
+def test_what_people_read_of_a_held_switch_is_no_part_of_the_json(monkeypatch, capsys):
+    class Switch:
+        def __init__(self, session, report):
+            self.report = report
+
+        def hold(self, released):
+            self.report("agilo is armed: hears this switch")
+
+    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext("a session"))
+    monkeypatch.setattr(estop, "StopButton", lambda session: SimpleNamespace(press=dict))
+    monkeypatch.setattr(dead_mans_switch, "DeadMansSwitch", Switch)
+    monkeypatch.setattr(dead_mans_switch, "stop_on_signals", lambda: SimpleNamespace(requested=True))
+    assert main(["estop", "--hold", "--json"]) == 1
+    printed = capsys.readouterr()
+    assert json.loads(printed.out) == {"stopped": False, "drivers": {}}
+    assert printed.err.endswith("\nagilo is armed: hears this switch\n")

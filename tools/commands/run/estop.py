@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.hold:
                 from tailor.tools.operator.dead_mans_switch import hold_in_terminal
 
-                hold_in_terminal(session)
+                hold_in_terminal(session, sys.stderr if arguments.json else sys.stdout)
         finally:  # whatever ended it
             states = button.press()
     print(_json(states) if arguments.json else summary(states))
