@@ -1,6 +1,7 @@
 """The stand-in robot with sensors that may fail, driven by the real executive through a proxy."""
 
 import json
+import time
 from contextlib import ExitStack, contextmanager
 
 from tailor.schemas.messages import ArmRequest, ExecStatus
@@ -36,7 +37,7 @@ class Robot:
         self._children = [self._start("tailor.tools.main", "executive", "soccer", *arguments)]
         self.status = None
         wait_until(self.asks_to_be_armed, "executive")
-        wait_until(self.moves, "robot moves")
+        wait_until(self.moves_or_is_armed_again, "robot moves")
 
     def asks_to_be_armed(self):
         """Whether the new executive is there and not armed yet; people arm it then."""
@@ -45,6 +46,13 @@ class Robot:
             return False
         self.arms()
         return True
+
+    def moves_or_is_armed_again(self):
+        """A loaded machine may stop the robot as it starts, for want of commands: then people arm it again."""
+        if not self.moves() and self.status.reason.startswith("driver not armed"):
+            self.arms()
+            time.sleep(0.2)
+        return self.moves()
 
     def arms(self):
         """Arms the executive, as people do; without effect while it is armed."""
