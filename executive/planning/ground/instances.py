@@ -142,7 +142,7 @@ def _without_restored(
     kept: list[GroundEffect] = []
     restored: list[GroundEffect] = []
     for effect in effects:
-        additions = failures.get((effect.literal ^ 1, effect.moment), []) if effect.literal % 2 else []
+        additions = failures.get((effect.literal ^ 1, effect.moment), [])
         facts.spend(max(len(additions) - 1, 0))  # each excludes one more condition
         variants = _unless_added(effect, additions)
         kept += variants
