@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from enum import StrEnum
-from itertools import pairwise
+from itertools import groupby
 
 from tailor.schemas.messages import ArmRequest, DriverState
 from tailor.simnodes.driver import ARM_REFUSED
@@ -84,7 +84,7 @@ class Exchange:
         if request.arm:
             if self._before is None or self._halted_s is not None or now_s - self._heard_s > FRESH_S:
                 return None
-            if len(self._epochs) < IN_A_ROW or len(set(self._epochs[-IN_A_ROW:])) > 1:
+            if self._epochs[-IN_A_ROW:] != [self._before.epoch] * IN_A_ROW:
                 return None
             request = replace(request, epoch=self._before.epoch)
         if self._first_s is None:
@@ -117,8 +117,8 @@ class Exchange:
 
     def _several(self) -> bool:
         """Whether a start was heard again after another one: a driver that starts anew is not."""
-        changes = sum(a != b for a, b in pairwise(self._epochs))
-        return changes >= len(set(self._epochs)) > 0
+        starts = [epoch for epoch, _ in groupby(self._epochs)]
+        return len(starts) > len(set(starts))
 
     def _is_wanted(self, state: DriverState) -> bool:
         if not self._request.arm:
