@@ -68,7 +68,11 @@ class RecordingPart:
 
     def _check_remap(self) -> None:
         """Raise UsageError for a misspelt key: its messages would be published under the recorded one."""
-        keys = {recorded.key for recorded in self.recording.messages()} if self.remap else set()
+        keys: set[str] = set()
+        for recorded in self.recording.messages() if self.remap else ():
+            keys.add(recorded.key)
+            if keys >= self.remap.keys():
+                return
         if unknown := sorted(set(self.remap) - keys):
             raise UsageError(
                 f"--remap {unknown[0]}={self.remap[unknown[0]]}: {self.recording.path} has no such key, expected one "
