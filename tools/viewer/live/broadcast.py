@@ -117,7 +117,7 @@ class EventBroadcast:
           TooManyPagesError: So many are connected already.
         """
         with self._lock:
-            if most is not None and len(self._pages) >= most:
+            if most is not None and self.pages >= most:
                 raise TooManyPagesError
             page = Subscription(encoded(self._events))
             self._pages.add(page)
