@@ -43,7 +43,11 @@ def spec_of_robot(robot: str) -> DomainSpec:
       UsageError: As `spec_of`.
     """
     owners = [package for package in packages() if package.spec and package.spec.robot == robot]
-    return _usable(owners, f"no robot {robot!r}, expected one of: {', '.join(robot_names())}")
+    unread = [package for package in packages() if package.spec is None]  # the robot's package may be one of them
+    return _usable(
+        owners or [package for package in unread if package.name == robot],
+        "; ".join([f"no robot {robot!r}, expected one of: {', '.join(robot_names())}", *map(_refusal, unread)]),
+    )
 
 
 def _usable(found: Iterable[Package], otherwise: str) -> DomainSpec:
@@ -53,8 +57,12 @@ def _usable(found: Iterable[Package], otherwise: str) -> DomainSpec:
         faults = _faults(package)
         if package.spec and not faults:
             return package.spec
-        faulty.append(f"{package.declared_in}: {'; '.join(faults)}")
+        faulty.append(_refusal(package))
     raise UsageError("; ".join(faulty) or otherwise)
+
+
+def _refusal(package: Package) -> str:
+    return f"{package.declared_in}: {'; '.join(_faults(package))}"
 
 
 def _faults(package: Package) -> tuple[str, ...]:

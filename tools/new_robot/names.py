@@ -33,6 +33,8 @@ def _objections(name: str) -> Iterator[str]:
     if not NAME.fullmatch(name):
         yield "expected lower-case letters, digits, - and _, first a letter"
         return
+    if name[-1] in "-_":
+        yield "expected a letter or digit at its end: pip takes no other name of a distribution"
     package = package_of(name)
     if name in RESERVED:
         yield "expected another name: keys of Tailor's own begin with it"

@@ -172,6 +172,15 @@ def test_a_package_that_cannot_be_loaded_hinders_only_those_who_name_it(installs
         installed.spec_of("aaa")
 
 
+def test_a_robot_whose_package_cannot_be_loaded_is_refused_with_the_cause(installs):
+    installs(courier=":MISSING")
+    fault = "courier_robot:MISSING: cannot be loaded: AttributeError: "
+    with pytest.raises(UsageError, match=f"^{fault}"):
+        installed.spec_of_robot("courier")
+    with pytest.raises(UsageError, match=f"^no robot 'pedelec', expected one of: ; {fault}"):
+        installed.spec_of_robot("pedelec")
+
+
 def test_one_robot_belongs_to_one_package(installs):
     installs(courier=":GOOD", rival=":RIVAL")
     assert installed.robot_names() == ("pedelec",)

@@ -26,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
     parser.add_argument("what", choices=["robot"], help="what to write: robot")
-    parser.add_argument("name", metavar="NAME", help="name of the robot: lower-case letters, digits, - and _")
+    parser.add_argument("name", metavar="NAME", help="name of the robot: lower-case letters, digits, inner - and _")
     parser.add_argument("--kind", choices=kinds(), default="wheeled", help="kind of robot (default: %(default)s)")
     parser.add_argument(
         "--into", type=Path, default=Path(), metavar="DIR", help="folder in which NAME/ is made (default: this one)"

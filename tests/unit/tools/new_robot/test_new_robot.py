@@ -77,6 +77,8 @@ def test_a_script_reads_where_the_package_lies(tmp_path: Path, capsys) -> None:
         ("exec", "expected another name: keys of Tailor's own begin with it"),
         ("", "expected lower-case letters"),
         ("../cart", "expected lower-case letters"),
+        ("cart-", "expected a letter or digit at its end"),
+        ("cart_", "expected a letter or digit at its end"),
         ("class", "a word of Python"),
         ("json", "a Python module 'json'"),
         ("tests", "lies beside the package"),
