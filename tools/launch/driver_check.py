@@ -8,6 +8,7 @@ from typing import Any
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import raised_text
 from tailor.schemas.parsed_files import read_toml, shown
 from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate, nominal_rates_hz
 from tailor.simnodes.driver import command_values
@@ -47,6 +48,8 @@ def faults_of_table(table: Mapping[str, Any], domain: Domain) -> Iterator[str]:
     if table.get("robot", domain.robot) != domain.robot:
         yield f"robot is {shown(table['robot'])}, expected '{domain.robot}'"
     yield from (f"sensors: there is no topic '{name}'" for name in table.get("sensors", {}) if name not in TOPICS)
+    both = [each["topic"] for each in _commands(table) if each["topic"] in table.get("sensors", {})]
+    yield from (f"{name} is the topic of a command and of a sensor, expected two" for name in both)
     yield from _unknown_keys(table)
     units = {axis.name: axis.unit for axis in domain.axes if axis.unit}
     for axis in (axis for command in _commands(table) for axis in command["axes"]):
@@ -119,7 +122,11 @@ def _misread(domain: Domain, driver: DriverSpec) -> Iterator[str]:
     for outlet, declared in zip(outlets, driver.all_outlets(), strict=True):
         ranges, parts = [(axis.lower, axis.upper) for axis in outlet.axes], len(outlet.axes) + 2
         written = tuple(lower + (upper - lower) * (k + 1) / parts for k, (lower, upper) in enumerate(ranges))
-        read = command_values(outlet.message(written, 0), declared.axes)
+        try:
+            read = command_values(outlet.message(written, 0), declared.axes)
+        except Exception as error:  # code of a package
+            yield f"{outlet.topic}: the domain's message cannot be made: {raised_text(error)}"
+            continue
         if read != written:
             said, heard = (", ".join(f"{value:g}" for value in values) or "nothing" for values in (written, read))
             yield f"{outlet.topic} carries {said} for {', '.join(declared.axes)}, and the driver reads {heard}"

@@ -20,6 +20,7 @@ from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.launch.driver_check import faults_of_table, mismatches_of
+from tailor.tools.launch.member_check import faults_of_controller, faults_of_members
 from tailor.tools.launch.scenario_check import faults_of_scenarios
 
 
@@ -39,6 +40,10 @@ def check_package(name: str) -> Domain:
 def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     """All faults of a package, each with file and field."""
     where = spec.domain
+    unlike = [f"{where}: {fault}" for fault in faults_of_members(domain)]
+    if unlike:
+        yield from unlike
+        return
     for field in ("name", "robot"):
         if getattr(domain, field) != getattr(spec, field):
             yield f"{where}: {field} is '{getattr(domain, field)}', expected '{getattr(spec, field)}' by the spec"
@@ -46,7 +51,7 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     yield from (f"{where}: {fault}" for fault in _faults_of_pddl(domain))
     for action_name, action in domain.actions.items():
         yield from (f"{where}: actions['{action_name}']: {fault}" for fault in _faults_of_action(domain, action))
-    yield from faults_of_scenarios(spec)
+    yield from faults_of_scenarios(spec, domain)
     yield from (f"{spec.driver}: {fault}" for fault in _faults_of_driver(spec, domain))
 
 
@@ -93,6 +98,9 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
     for kind, model in (("duration", action.duration_model), ("success", action.success_model)):
         if not model.endswith(f"/{kind}") and (model or kind == "duration"):
             yield f"{kind}_model is '{model}', expected ACTION/{kind}"
+        elif model and model.rpartition("/")[0] not in domain.actions:
+            yield f"{kind}_model is '{model}', expected one of an action: {', '.join(domain.actions)}"
+    yield from faults_of_controller(action)
     yield from _faults_of_context(action)
     outlets = {outlet.name for outlet in outlets_of(domain)}
     yield from (f"drives '{name}', which is none of outlets" for name in action.drives if name not in outlets)

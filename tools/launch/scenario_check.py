@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from typing import Any
 
 import numpy as np
 
-from tailor.executive import domains
+from tailor.executive import domains, planning
+from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, part
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.parsed_files import shown
 
 
-def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
+def faults_of_scenarios(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     """All faults of a package's scenarios, each with file and field."""
     folder = None if spec.generator else file(spec, "scenarios")
     if folder is not None and folder.is_dir():
         names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
-        found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in _faults_of_file(spec, folder, name)]
+        files = _ScenarioFiles(spec, domain, folder)
+        found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in files.faults(name)]
         if found:
             yield from found
             return
@@ -33,15 +36,39 @@ def faults_of_scenarios(spec: DomainSpec) -> Iterator[str]:
         yield f"{spec.generator or spec.scenarios}: there is no scenario"
 
 
-def _faults_of_file(spec: DomainSpec, folder: Traversable, name: str) -> Iterator[str]:
-    """Faults of a scenario file: of the entries that Tailor reads, else of a trial of `draw`, which reads the rest."""
-    try:
-        declared = domains.declaration(spec, name.removesuffix(".toml"))
-    except ValueError as error:
-        yield str(error)
-        return
-    found = [*_faults_of_entries(folder, declared)]
-    yield from found or _faults_of_draw(spec, declared)
+@dataclass(frozen=True, slots=True)
+class _ScenarioFiles:
+    spec: DomainSpec
+    domain: Domain
+    folder: Traversable
+
+    def faults(self, name: str) -> Iterator[str]:
+        """Faults of a file: of the entries that Tailor reads, else of `draw` and of the problem."""
+        try:
+            declared = domains.declaration(self.spec, name.removesuffix(".toml"))
+        except ValueError as error:
+            yield str(error)
+            return
+        found = [*_faults_of_entries(self.folder, declared)]
+        yield from found or (*self._faults_of_draw(declared), *self._faults_of_problem(declared["problem"]))
+
+    def _faults_of_draw(self, declared: Mapping[str, Any]) -> Iterator[str]:
+        """What `draw`, code of the package, raises for an entry that is missing or has a value of another type."""
+        draw = part(self.spec, "draw")
+        try:
+            _start, _places, _events = draw(declared, np.random.default_rng(0))
+        except Exception as error:
+            yield f"cannot be drawn: {type(error).__name__}: {error}"
+
+    def _faults_of_problem(self, name: str) -> Iterator[str]:
+        try:
+            text = self.folder.joinpath(name).read_text(encoding="utf-8")
+            planning.parse_problem(text, planning.parse_domain(self.domain.pddl), source=name)
+        except UnicodeDecodeError:
+            yield f"{name}: not UTF-8"
+        except planning.PddlError as error:
+            if str(error).startswith(f"{name}:"):  # otherwise it is one of the domain, which has its own line
+                yield str(error)
 
 
 def _faults_of_entries(folder: Traversable, declared: Mapping[str, Any]) -> Iterator[str]:
@@ -55,12 +82,3 @@ def _faults_of_entries(folder: Traversable, declared: Mapping[str, Any]) -> Iter
     settings = declared.get("settings", {})
     if not isinstance(settings, dict):
         yield f"settings is {shown(settings)}, expected a table"
-
-
-def _faults_of_draw(spec: DomainSpec, declared: Mapping[str, Any]) -> Iterator[str]:
-    """What `draw`, code of the package, raises for an entry that is missing or has a value of another type."""
-    draw = part(spec, "draw")
-    try:
-        _start, _places, _events = draw(declared, np.random.default_rng(0))
-    except Exception as error:
-        yield f"cannot be drawn: {type(error).__name__}: {error}"

@@ -1,10 +1,12 @@
 """A package whose parts do not hold together is refused at once, with all faults in one list."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
 from tailor.tools.commands.run import executive
@@ -33,6 +35,14 @@ def soccer(**fields):
     return dataclasses.replace(domains.load("soccer"), **fields)
 
 
+def without(*names):
+    """The soccer domain, as an object that lacks some members."""
+    domain = domains.load("soccer")
+    return SimpleNamespace(
+        **{each: getattr(domain, each) for each in dir(domain) if each[0] != "_" and each not in names}
+    )
+
+
 FAULTS = {
     "name is 'chess', expected 'soccer' by the spec": lambda: soccer(name="chess"),
     "robot is 'hal', expected 'agilo' by the spec": lambda: soccer(robot="hal"),
@@ -47,6 +57,14 @@ FAULTS = {
     "has the argument 99, expected one of the": lambda: changed(parameter={"argument": 99}),
     "actions['goToPose']: duration_model is '', expected": lambda: changed(duration_model=""),
     "success_model is 'goToPose/luck'": lambda: changed(success_model="goToPose/luck"),
+    "actions['goToPose']: duration_model is 'walk/duration', expected one of an action: ": lambda: changed(
+        duration_model="walk/duration"
+    ),
+    "actions['goToPose']: controller is the class GoToPose, expected an object": lambda: changed(controller=GoToPose),
+    "actions['goToPose']: controller is a int, expected a callable": lambda: changed(controller=3),
+    "returns a NoneType, expected a Domain": lambda: None,
+    "SimpleNamespace lacks axes, ready of Domain": lambda: without("axes", "ready"),
+    "required is 'odom', expected a tuple of names": lambda: soccer(required="odom"),
     "subgoal_action is 'fly'": lambda: changed(subgoal_action="fly"),
     "actions['dribbleBall']: parameters is empty": lambda: changed("dribbleBall", parameters=()),
     "actions['goToPose']: parameters is empty": lambda: changed(parameters=()),
@@ -68,6 +86,13 @@ def test_each_fault_of_a_domain_is_named(fault):
     assert all(each.startswith(("tailor.executive.domains.soccer:make: ", "tailor.simnodes.agilo:")) for each in found)
 
 
+def test_a_message_that_cannot_be_made_is_a_fault_with_its_line(monkeypatch):
+    domain = without()
+    domain.message = lambda command, stamp_ns: command[9]
+    [found] = faults_of_package(spec_of("soccer"), domain)
+    assert "cmd_vel: the domain's message cannot be made: IndexError: tuple index out of range (test_package" in found
+
+
 def test_faults_come_in_the_order_of_the_package():
     unknown = [f"fly{number}" for number in range(9)]
     found = faults_of_package(spec_of("soccer"), soccer(executables=dict.fromkeys(unknown, "goToPose")))
@@ -83,6 +108,7 @@ def test_faults_come_in_the_order_of_the_package():
         ("rate_hz = 50", "rate = 50", "driver.toml: sensors.odom: unknown key 'rate', expected one of: rate_hz, frame"),
         ("upper = 0.9", "upper = 0.9\nkeep = 0.1", "driver.toml: v: unknown key 'keep', expected one of: name, unit"),
         ("timeout_s = 0.3", "timeout_s = 0.3\nrate = 3", "driver.toml: cmd_vel: unknown key 'rate', expected one of:"),
+        ("odom = ", "cmd_vel = ", "driver.toml: cmd_vel is the topic of a command and of a sensor, expected two"),
         ('unit = "m/s"', 'unit = "km/h"', "driver.toml: v has the unit 'km/h', expected m/s as the domain"),
         ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
         ("timeout_s = 0.3", "", "timeout_s is missing, expected a finite number"),
@@ -102,7 +128,7 @@ def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, f
 
 @pytest.fixture
 def scenarios(tmp_path, monkeypatch):
-    """An empty folder of soccer's scenarios, and the faults found in it; `draw` reads `leg_m` alone."""
+    """An empty folder of soccer's scenarios, and the faults found in it; draw reads `leg_m` alone."""
     folder = tmp_path / "scenarios"
     folder.mkdir()
     monkeypatch.setattr(scenario_check, "part", lambda *_: lambda declared, _: (declared["leg_m"], {}, ()))
@@ -133,10 +159,27 @@ def test_scenarios_that_are_missing_are_named(scenarios):
 )
 def test_each_fault_of_a_scenario_file_is_named_with_the_file(scenarios, text, fault):
     folder, faults = scenarios
-    (folder / "a.pddl").write_text("(define (problem a))")
+    (folder / "a.pddl").write_text("(define (problem a) (:domain soccer) (:goal (and)))")
     (folder / "good.toml").write_text("problem = 'a.pddl'\norder = 2\nleg_m = 1")
     assert faults() == []
     (folder / "bad.toml").write_bytes(text)
+    [found] = faults()
+    assert found.startswith(f"{spec_of('soccer').scenarios}/bad.toml: {fault}")
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        (b"(define (problem a)", "a.pddl:1:1: this parenthesis is never closed"),
+        (b"(define (problem a) (:domain chess) (:goal (and)))", "a.pddl:1:30: the problem belongs to domain 'chess'"),
+        (b"(define (problem a) (:domain soccer) (:goal (final pos3)))", "a.pddl:1:52: unknown object 'pos3'"),
+        (b"\xff", "a.pddl: not UTF-8"),
+    ],
+)
+def test_each_fault_of_a_problem_is_named_with_both_files(scenarios, text, fault):
+    folder, faults = scenarios
+    (folder / "a.pddl").write_bytes(text)
+    (folder / "bad.toml").write_text("problem = 'a.pddl'\nleg_m = 1")
     [found] = faults()
     assert found.startswith(f"{spec_of('soccer').scenarios}/bad.toml: {fault}")
 

@@ -4,11 +4,13 @@ import json
 import subprocess
 import sys
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
 from tailor.schemas.errors import UsageError
 from tailor.tools.main import main
 from tailor.tools.new_robot import templates
@@ -53,6 +55,16 @@ def test_a_leg_that_fits_nowhere_is_refused_and_not_drawn_for_ever(kind: str, le
         assert len(module["draw"](declared, np.random.default_rng(0))[1]) == len(labels)
         with pytest.raises(ValueError, match=f"{leg} is 99 to 100, expected a leg that fits"):
             module["draw"]({**declared, leg: [99, 100]}, np.random.default_rng(0))
+
+
+@KINDS
+def test_an_object_of_the_problem_without_a_place_is_a_conflict(kind: str, tmp_path: Path, monkeypatch) -> None:
+    write_robot(f"placeless-{kind}", kind, tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path / f"placeless-{kind}"))
+    domain = import_module(f"placeless_{kind}.domain").make()
+    query = LabelQuery("x", "s1", (("next", "home", "s1"),), (), domain.initial_belief(), Scenario("tour", "", {}))
+    with pytest.raises(Conflict, match="the scenario draws no place for s1"):
+        domain.value(query)
 
 
 @pytest.mark.parametrize("kind", kinds())
