@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
+from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
@@ -136,6 +137,9 @@ def _refuse_ignored(arguments: argparse.Namespace) -> None:
 def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
     """Gather episodes with random arguments."""
     beside = arguments.beside_object or arguments.beside_objects > 0
+    actions = actions_of(name, arguments.actions, beside)
+    if not beside:  # such episodes have checks of their own
+        try_actions(name, actions)
     specs = [
         DataSetSpec(
             name,
@@ -147,7 +151,7 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
             objects=arguments.beside_objects,
             profile=arguments.profile,
         )
-        for action in actions_of(name, arguments.actions, beside)
+        for action in actions
     ]
     for spec in specs:
         random_episodes.prepare(spec, arguments.resume)
