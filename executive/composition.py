@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
+from tailor.executive.interfaces.action import Action, unchanged
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.sequence import InstantiatedAction
 from tailor.executive.refinement.objective.stage_models import models_of
@@ -63,14 +64,27 @@ def load_models(robot: str, zoo: str = "") -> Models:
     """Load a robot's action models.
 
     Raises:
-      UsageError: A missing or altered model, one whose training range is smaller than its action's, or a refinement
-        gate that was learned with other models.
+      UsageError: A missing or altered model, one whose training range is smaller than its action's, or one that takes
+        other arguments.
     """
     from tailor.models.runtime import load_robot  # and onnxruntime: a simulator or launcher has no use for 30 MB of it
 
     folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
+    cards = {path: model.card for path, model in durations.items()}
+    cards |= {path: model.card for path, model in successes.items()}
+    for action in domains.load(spec_of_robot(robot).name).actions.values():
+        for path in (action.duration_model, action.success_model):
+            if path in cards and action.arguments is unchanged:
+                _check_arguments(action, [each["name"] for each in cards[path]["arguments"]], folder / robot / path)
     return Models(durations, successes)
+
+
+def _check_arguments(action: Action, taken: Sequence[str], model: Path) -> None:
+    """Raise UsageError unless the parameters of an action are the arguments of its model, in their order."""
+    declared = [parameter.name for parameter in action.parameters]
+    if declared != taken:
+        raise UsageError(f"{model}: takes {' '.join(taken)}, expected {' '.join(declared)} by the action {action.name}")
 
 
 def check_models(context: Context) -> None:

@@ -1,5 +1,6 @@
 """A model is used only if bytes, card and answers agree; what is refused is told with both sides named."""
 
+import dataclasses
 import json
 import shutil
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tailor.executive import domains
 from tailor.executive.composition import load_models
 from tailor.models import inference, runtime
 from tailor.models.cards.card import card_path, read_card, sha256_of, write_card
@@ -231,6 +233,17 @@ def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: 
     with pytest.raises(UsageError, match=r"vg was trained in \[0, 0.2\] m/s, expected to cover \[0, 0.6\]"):
         load_models("agilo", str(zoo))
     assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
+
+
+def test_a_model_with_an_argument_that_its_action_has_no_more_is_refused_before_a_tick(zoo: Path, monkeypatch) -> None:
+    soccer = domains.load("soccer")
+    action = soccer.actions["goToPose"]
+    fewer = dataclasses.replace(action, parameters=action.parameters[:-1])
+    changed = dataclasses.replace(soccer, actions={**soccer.actions, action.name: fewer})
+    monkeypatch.setattr(domains, "load", lambda _: changed)
+    taken = r"takes x y phi v xg yg phig vg, expected x y phi v xg yg phig by the action goToPose"
+    with pytest.raises(UsageError, match=f"goToPose/duration: {taken}"):
+        load_models("agilo", str(zoo))
 
 
 @pytest.mark.promise("P40")
