@@ -26,15 +26,33 @@ MISTAKES = {
 }
 
 
+def change(package, name, old, new):
+    text = (package / name).read_text(encoding="utf-8")
+    assert old in text
+    (package / name).write_text(text.replace(old, new), encoding="utf-8")
+
+
+BODIES = {
+    "cart.body:Body: cannot be simulated: ValueError: XML parse error": MISTAKES["ValueError: XML parse error"],
+    "cart.body:Body: robot is 'card', expected 'cart' by the spec": ("body.py", 'robot = "cart"', 'robot = "card"'),
+}
+
+
+@pytest.mark.parametrize("refusal", BODIES)
+def test_a_body_that_cannot_be_made_or_is_another_robots_is_not_simulated(refusal, tmp_path, capsys):
+    with known_robot("cart", "wheeled", tmp_path) as folder:
+        change(folder / "cart", *BODIES[refusal])
+        assert main(["sim", "cart"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"tailor sim: {refusal}")
+    assert error.count("\n") == 1
+
+
 @pytest.mark.parametrize("refusal", MISTAKES)
 def test_a_package_whose_code_raises_is_refused_in_one_line(refusal, tmp_path, monkeypatch, capsys):
-    name, old, new = MISTAKES[refusal]
     monkeypatch.chdir(tmp_path)
     with known_robot("cart", "wheeled", tmp_path) as folder:
-        path = folder / "cart" / name
-        text = path.read_text(encoding="utf-8")
-        assert old in text
-        path.write_text(text.replace(old, new), encoding="utf-8")
+        change(folder / "cart", *MISTAKES[refusal])
         assert main(["gather", "cart", "--episodes", "1", "--jobs", "1"]) == 2
     error = capsys.readouterr().err
     assert refusal in error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
@@ -56,9 +57,13 @@ class _ScenarioFiles:
         """What `draw`, code of the package, raises for an entry that is missing or has a value of another type."""
         draw = part(self.spec, "draw")
         try:
-            _start, _places, _events = draw(declared, np.random.default_rng(0))
+            start, places, _events = draw(declared, np.random.default_rng(0))
+            values = {**start, **{f"{p}.{q}": v for p, place in places.items() for q, v in place.items()}}
+            infinite = [name for name, value in values.items() if not math.isfinite(value)]
         except Exception as error:
             yield f"cannot be drawn: {type(error).__name__}: {error}"
+        else:
+            yield from (f"{name} is drawn as {values[name]}, expected a finite number" for name in infinite)
 
     def _faults_of_problem(self, name: str) -> Iterator[str]:
         try:

@@ -12,11 +12,12 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import robot_names
+from tailor.schemas.installed import raised_text, robot_names, spec_of_robot
 from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
+from tailor.simnodes.world import World
 from tailor.tools.cli.bus_end import BusEnd
 from tailor.tools.cli.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import deployment_from
@@ -48,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MAX_SPEED:g}")
     leave = checked_sender(arguments.leave, "--leave")
     deployment = deployment_from(arguments)
-    world = make_world(arguments.robot, deployment.scenario, deployment.executive.seed)
+    world = _world(arguments.robot, deployment.scenario, deployment.executive.seed)
     end = BusEnd(arguments, stop_on_signals())
     with open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
         codec.prime()
@@ -59,6 +60,22 @@ def run(arguments: argparse.Namespace) -> int:
         _run(node, world.body.robot, lambda: end.reached(session), notifier)
     end.check()
     return 0
+
+
+def _world(robot: str, scenario: str, seed: int) -> World:
+    """`make_world`; what code of a package raises is an error of its user: another start would end in the same way."""
+    spec = spec_of_robot(robot)
+    try:
+        world = make_world(robot, scenario, seed)
+    except UsageError:
+        raise
+    except Exception as error:
+        if spec.package.startswith("tailor."):
+            raise
+        raise UsageError(f"{spec.body}: cannot be simulated: {raised_text(error)}") from error
+    if world.body.robot != robot:
+        raise UsageError(f"{spec.body}: robot is '{world.body.robot}', expected '{robot}' by the spec")
+    return world
 
 
 def _run(node: Node, robot: str, ended: Callable[[], bool], notifier: Notifier) -> None:

@@ -128,10 +128,10 @@ def test_each_fault_of_a_driver_file_is_named(tmp_path, monkeypatch, old, new, f
 
 @pytest.fixture
 def scenarios(tmp_path, monkeypatch):
-    """An empty folder of soccer's scenarios, and the faults found in it; draw reads `leg_m` alone."""
+    """An empty folder of soccer's scenarios, and the faults found in it; `draw` reads `leg_m` alone."""
     folder = tmp_path / "scenarios"
     folder.mkdir()
-    monkeypatch.setattr(scenario_check, "part", lambda *_: lambda declared, _: (declared["leg_m"], {}, ()))
+    monkeypatch.setattr(scenario_check, "part", lambda *_: lambda declared, _: ({"x": declared["leg_m"]}, {}, ()))
     for module in (domains, scenario_check):
         monkeypatch.setattr(module, "file", lambda *_: folder)
     return folder, lambda: list(faults_of_package(spec_of("soccer"), domains.load("soccer")))
@@ -155,6 +155,7 @@ def test_scenarios_that_are_missing_are_named(scenarios):
         (b"problem = 'a.pddl'\norder = 'last'", "order is 'last', expected a number"),
         (b"problem = 'a.pddl'\nsettings = 1", "settings is 1, expected a table"),
         (b"problem = 'a.pddl'\nlegs_m = [1, 2]", "cannot be drawn: KeyError: 'leg_m'"),
+        (b"problem = 'a.pddl'\nleg_m = nan", "x is drawn as nan, expected a finite number"),
     ],
 )
 def test_each_fault_of_a_scenario_file_is_named_with_the_file(scenarios, text, fault):
