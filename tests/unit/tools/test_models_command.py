@@ -53,6 +53,19 @@ def test_a_model_that_is_not_sound_is_told_and_fails_the_check(tmp_path: Path, c
     assert "sha256" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("named", [[], ["agilo"]])
+def test_a_model_without_which_no_executive_starts_is_told_as_missing(named, tmp_path: Path, capsys) -> None:
+    zoo = tmp_path / "zoo"
+    shutil.copytree(runtime.ZOO / "agilo", zoo / "agilo")
+    shutil.rmtree(zoo / "agilo" / "approachBall")
+    assert main(["models", "check", *named, "--zoo", str(zoo)]) == 1
+    out = capsys.readouterr().out
+    assert "agilo/approachBall/duration: " in out
+    assert "agilo/approachBall/success: " in out
+    assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["checked"] == ["agilo/goToPose/duration"]
+
+
 def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert main(["models", "list", "--json"]) == 0
     assert {"model", "learner", "episodes", "test"} <= json.loads(capsys.readouterr().out)[0].keys()

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
+from tailor.executive import domains
 from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 from tailor.models.cards.card_shape import TEST_FIGURES
@@ -18,7 +19,7 @@ from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
 from tailor.models.runtime import BESIDE, ZOO, load_model
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import models_folder, robot_names
+from tailor.schemas.installed import models_folder, robot_names, spec_of_robot
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
@@ -208,7 +209,7 @@ def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) 
     from tailor.tools.learning.staleness import staleness
 
     failed, stale = {}, {}
-    for name in names:
+    for name in [*names, *_missing(arguments.models, arguments.zoo)]:
         try:
             model, (robot, action, _) = _loaded(name, arguments.zoo), name.split("/")
             check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
@@ -221,11 +222,22 @@ def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) 
         if not arguments.json:
             print(plain(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}"))
     if arguments.json:
-        print(json.dumps({"checked": names, "failed": failed, "stale": stale}))
+        print(json.dumps({"checked": [*dict.fromkeys((*names, *failed))], "failed": failed, "stale": stale}))
     else:
         for robot in dict.fromkeys(name.split("/")[0] for name in stale):
             print(f"stale models of {robot} are made anew by {remaking_advice(robot, named)}")
     return 1 if failed or stale else 0
+
+
+def _missing(named: list[str], zoo: Path) -> list[str]:
+    """Models that an action of the named robots needs to start, of all whose folder this is if none is named."""
+    theirs = [robot for robot in robot_names() if models_folder(robot) == zoo or (zoo / robot).is_dir()]
+    missing = []
+    for robot in (robot for robot in theirs if robot in named or not named):
+        actions = domains.load(spec_of_robot(robot).name).actions.values()
+        needed = [path for action in actions for path in (action.duration_model, action.success_model) if path]
+        missing += [f"{robot}/{path}" for path in needed if not [*(zoo / robot).glob(f"{path}.*")]]
+    return [*dict.fromkeys(missing)]
 
 
 def _check_beside(name: str, card: Card, zoo: Path) -> None:
