@@ -208,6 +208,8 @@ def _chosen(names: list[str], flags: list[str], everything: bool) -> list[Chosen
     for name, module, settings, _ in parsed:
         has = _domains_of(module)
         if not settings.domain or name in FOR_ANY_DOMAIN or settings.domain in has:
+            if not everything and hasattr(module, "check"):  # with `all`, a flag may be for another one
+                module.check(settings)
             chosen.append((name, module, settings))
         elif not everything:
             raise UsageError(f"--domain {settings.domain}: {name} has: {', '.join(has)}")

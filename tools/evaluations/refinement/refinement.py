@@ -21,6 +21,7 @@ from tailor.tools.evaluations.refinement.replicas import Recipe, configure_repli
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.lockstep.bodies import body_of
 
+POINTS, ORACLE_RUNS = 18, 40
 REMARKS = (
     "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "
     "failures and contacts: share of all runs; arrival: mean error at the ends of the actions, by the ground truth",
@@ -69,10 +70,10 @@ def configure(
     parser.add_argument("--profile", default="", help="profile of the body, e.g. degraded (default: as trained on)")
     parser.add_argument("--oracle", type=at_least(0, "--oracle"), default=oracle, metavar="N",
                         help="starts at which choices are simulated (default %(default)s)")  # fmt: skip
-    parser.add_argument("--points", type=at_least(2, "--points"), default=18,
-                        help="angles that the oracle tries (default %(default)s)")  # fmt: skip
-    parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), default=40, metavar="N",
-                        help="runs a start where the choices are too many for all (default %(default)s)")  # fmt: skip
+    parser.add_argument("--points", type=at_least(2, "--points"),
+                        help=f"angles that the oracle tries (default {POINTS})")  # fmt: skip
+    parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), metavar="N",
+                        help=f"runs a start where choices are too many for all (default {ORACLE_RUNS})")  # fmt: skip
     configure_replicas(parser)
     configure_report(parser)
 
@@ -80,6 +81,8 @@ def configure(
 def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     """Evaluate and publish the report; 0 if every row `is_better`."""
     named = preset or Preset()
+    of_oracle = {"points": arguments.points or POINTS, "oracle_runs": arguments.oracle_runs or ORACLE_RUNS}
+    arguments = argparse.Namespace(**{**vars(arguments), **of_oracle})
     domain, scenarios = _scenarios(arguments, named)
     _refuse_ignored(arguments)
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
@@ -103,6 +106,14 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)
     publish_report(report, arguments.json, arguments.report)
     return 0 if all(is_better(row) for row in rows) else 1
+
+
+def check(arguments: argparse.Namespace) -> None:
+    """Raise UsageError for flags of an oracle that is not asked for."""
+    given = {"--points": arguments.points, "--oracle-runs": arguments.oracle_runs}
+    ignored = [flag for flag, number in given.items() if number is not None]
+    if ignored and not arguments.oracle:
+        raise UsageError(f"{', '.join(ignored)}: of the oracle, expected none without --oracle N")
 
 
 def _refuse_ignored(arguments: argparse.Namespace) -> None:

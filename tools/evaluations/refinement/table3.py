@@ -19,6 +19,9 @@ PRESET = refinement.Preset(
 DOMAINS = tuple(PRESET.scenarios or ())
 
 
+check = refinement.check
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table3`."""
     refinement.configure(parser, episodes=500)

@@ -14,6 +14,9 @@ PRESET = refinement.Preset(
 )
 
 
+check = refinement.check
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate table4`."""
     refinement.configure(parser, horizons=(2, 3, 4))

@@ -40,6 +40,7 @@ from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_bett
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired, run_one
 from tailor.tools.learning.recipe import read_recipe, recipe_path
+from tailor.tools.main import main
 
 COSTS = [f"{cost}_pct_{who}" for cost in ("failures", "contacts") for who in ("greedy", "refined")]
 DONE = Outcome(
@@ -199,6 +200,14 @@ def test_numbers_of_models_that_are_not_made_are_refused(flag, monkeypatch):
     refinement.configure(parser)
     with pytest.raises(UsageError, match=f"{flag}: of the models that --models K makes"):
         refinement.run(parser.parse_args(["--domain", "soccer", "--episodes", "2", flag, "100"]))
+
+
+@pytest.mark.parametrize("name", ["refinement", "table3", "table4"])
+@pytest.mark.parametrize("flag", ["--points", "--oracle-runs"])
+def test_flags_of_an_oracle_that_is_not_asked_for_are_refused_before_anything_runs(name, flag, monkeypatch, capsys):
+    monkeypatch.setattr(refinement, "rows_of", lambda *_: pytest.fail("runs"))
+    assert main(["evaluate", name, "--domain", "soccer", flag, "12"]) == 2
+    assert capsys.readouterr().err == f"tailor evaluate: {flag}: of the oracle, expected none without --oracle N\n"
 
 
 def test_the_row_over_models_has_an_interval_between_models():
