@@ -107,14 +107,17 @@ def _check_flags(arguments: argparse.Namespace) -> None:
 
 
 def _write(arguments: argparse.Namespace) -> int:
-    """Request a snapshot; 0 if it is accepted."""
+    """Request a snapshot; 0 if it is accepted, 1 if it is declined, 2 if nobody keeps one."""
     with open_bus(arguments, "people", sender=sender_of(arguments)) as session:
         accepted, response = session.call(SNAPSHOT_KEY, "requested")
+    absent = response == f"no service at {SNAPSHOT_KEY}"
+    if absent:
+        response += ", expected a running `tailor record --snapshot S`"
     if arguments.json:
         print(json.dumps({"accepted": accepted, "answer": response}))
     else:
         print(plain(response), file=sys.stdout if accepted else sys.stderr)
-    return 0 if accepted else 1
+    return 0 if accepted else 2 if absent else 1
 
 
 def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection) -> Recorder | SnapshotRecorder:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from types import SimpleNamespace
 
 import pytest
 
@@ -54,6 +55,28 @@ def test_flags_that_the_others_leave_no_use_for_are_refused(words, fault):
     record.configure(parser)
     with pytest.raises(UsageError, match=fault):
         record.run(parser.parse_args(words))
+
+
+@pytest.mark.parametrize(
+    ("answer", "code", "line"),
+    [
+        ((True, "writes run.mcap"), 0, "writes run.mcap"),
+        ((False, "nothing to write"), 1, "nothing to write"),
+        (
+            (False, "no service at recorder/snapshot"),
+            2,
+            "no service at recorder/snapshot, expected a running `tailor record --snapshot S`",
+        ),
+    ],
+)
+def test_a_request_ends_with_1_if_it_is_declined_and_with_2_if_nobody_takes_it(answer, code, line, monkeypatch, capsys):
+    monkeypatch.setattr(record, "open_bus", lambda *_, **__: nullcontext(SimpleNamespace(call=lambda *_: answer)))
+    monkeypatch.setattr(record, "stop_on_signals", lambda: None)
+    monkeypatch.setattr(record, "sender_of", lambda _: "")
+    parser = argparse.ArgumentParser()
+    record.configure(parser)
+    assert record.run(parser.parse_args(["--write"])) == code
+    assert "".join(capsys.readouterr()) == f"{line}\n"
 
 
 @pytest.mark.parametrize("folder", ["", ".", "/"])
