@@ -16,7 +16,8 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.parallel.pool import Numbered, Part, using
 from tailor.tools.parallel.software import Work, differences, software_for
 
-ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d+")
+ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:(?P<port>\d{1,5})")
+MAX_PORT = 65535
 CONNECT_S = 5.0  # limit for the scheduler's answer, for its first worker, and for a lost scheduler to come back
 ANSWER_S = 60.0  # limit for a worker to load its software, which takes seconds
 KEPT = "finished parts are kept, --resume continues"
@@ -103,7 +104,8 @@ class Cluster:
         try:
             self.client.wait_for_workers(1, timeout=CONNECT_S)
         except TimeoutError:
-            raise UsageError(f"--on {self.address}: the scheduler has no worker") from None
+            start = f"`dask worker {self.address} --nthreads 1` starts one"
+            raise UsageError(f"--on {self.address}: the scheduler has no worker; {start}") from None
         with self._explained():
             workers = self.client.scheduler_info(n_workers=-1)["workers"]
             answers = {
@@ -158,6 +160,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _address(text: str) -> str:
-    if not ADDRESS.fullmatch(text):
-        raise UsageError(f"--on is '{text}', expected tcp://HOST:PORT or tls://HOST:PORT")
+    read = ADDRESS.fullmatch(text)
+    if read is None or not 1 <= int(read["port"]) <= MAX_PORT:
+        raise UsageError(f"--on is '{text}', expected tcp://HOST:PORT or tls://HOST:PORT, a port up to {MAX_PORT}")
     return text

@@ -63,7 +63,10 @@ def test_a_worker_with_threads_is_refused(capsys, tmp_path) -> None:
     assert not (tmp_path / "x").exists()
 
 
-@pytest.mark.parametrize("address", ["lab-7:8786", "http://lab-7:8786", "tcp://lab-7", "tcp://lab-7:8786/x"])
+WRONG = ["lab-7:8786", "http://lab-7:8786", "tcp://lab-7", "tcp://lab-7:8786/x", "tcp://lab-7:0", "tcp://lab-7:87860"]
+
+
+@pytest.mark.parametrize("address", WRONG)
 def test_a_wrong_address_is_refused(address, capsys) -> None:
     assert main(["gather", "agilo", "--on", address]) == 2
     assert f"--on is '{address}', expected tcp://HOST:PORT or tls://HOST:PORT" in capsys.readouterr().err
