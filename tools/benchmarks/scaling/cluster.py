@@ -28,6 +28,7 @@ from tailor.tools.parallel.software import Work
 WORKERS = (2, 4, 8, 16, 32, 64)
 WORK_PARTS = 1500  # parts of the simulated work: 30000 episodes
 ROUNDS = 40  # empty parts, by which the overheads are measured
+LOOPBACK = {"dashboard_address": "127.0.0.1:0", "worker_dashboard_address": "127.0.0.1:0"}  # pages with logs
 
 
 def run(console: Console, quick: bool) -> None:
@@ -65,7 +66,7 @@ def _overheads_s(domain: str, part: bytes) -> tuple[float, float]:
     """Start of a worker, and what a part costs beside its work: its result is sent there and back."""
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0") as cluster:
+    with LocalCluster(n_workers=1, threads_per_worker=1, **LOOPBACK) as cluster:
         started = time.perf_counter()
         with working_on(cluster.scheduler_address, Work((domain,))):
             next(completed(_same, [(part,)], 1))
