@@ -89,6 +89,15 @@ def test_gathering_over_other_episodes_is_refused(gathered: Path, capsys: pytest
     assert "seed = 7, expected 8" in capsys.readouterr().err
 
 
+def test_a_refused_folder_leaves_no_empty_data_set_of_another_action(gathered: Path, tmp_path: Path, capsys) -> None:
+    shutil.copytree(gathered, tmp_path / "goToPose")
+    for more in ([], ["--resume", "--seed", "8"]):
+        command = ["gather", "agilo", "approachBall", "goToPose", "--episodes", "3", "--out", str(tmp_path), *more]
+        assert main(command) == 2
+        assert f"{tmp_path}/goToPose: " in capsys.readouterr().err
+        assert [path.name for path in tmp_path.iterdir()] == ["goToPose"]
+
+
 def test_going_on_with_fewer_episodes_throws_none_away(gathered: Path, tmp_path: Path, capsys) -> None:
     """The default of --episodes is small, and easily left out."""
     folder = shutil.copytree(gathered, tmp_path / "goToPose")
