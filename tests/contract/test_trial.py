@@ -14,6 +14,11 @@ MISTAKES = {
         "pose.phi, max(0.0, belief.v),",
         "pose.phi,",
     ),
+    "ValueError: timestep is 0.05 s, expected a part of 0.01 s (body.py, line ": (
+        "scene.xml",
+        'timestep="0.005"',
+        'timestep="0.05"',
+    ),
     "ValueError: XML parse error": ("scene.xml", "</mujoco>", ""),
     "body = 'cart.body:Body': invalid syntax (body.py, line ": ("body.py", "def _drive(self)", "def _drive(self"),
     "body = 'cart.body:Body': module 'cart.body' has no": ("body.py", "class Body:", "class Chassis:"),
