@@ -50,7 +50,7 @@ def shortened(context: Context, state: State) -> State:
     now = decided.watch.sequence(state.belief) if slow_inputs(context, state) is None else None
     if now is None:
         return state
-    found = shortcut(decided.sequence, decided.choice.values, now, context.models, context.settings.refinement)
+    found = shortcut(decided.sequence, decided.choice, now, context.models, context.settings.refinement)
     if found is None:
         return state
     sequence, choice = found

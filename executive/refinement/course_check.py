@@ -43,7 +43,7 @@ def risen_failure(
     course = from_here(decided.bind(values), now)
     objective = SequenceObjective(course.within(settings.horizon), course.variables, models, settings)
     predictions = objective.predict(np.empty(0))
-    risen = _any_of([float(prediction.failure[0]) for prediction in predictions]) > _any_of(failure) + MAX_RISE
+    risen = any_of([float(prediction.failure[0]) for prediction in predictions]) > any_of(failure) + MAX_RISE
     return float(predictions[0].failure_s[0]), risen
 
 
@@ -70,6 +70,6 @@ def _start(sequence: ActionSequence, instance: InstantiatedAction) -> dict[str, 
     }
 
 
-def _any_of(probabilities: Sequence[float]) -> float:
+def any_of(probabilities: Sequence[float]) -> float:
     """Probability that any of independent failures happens."""
     return 1.0 - float(np.prod([1.0 - probability for probability in probabilities]))

@@ -12,7 +12,9 @@ from dataclasses import replace
 from tailor.executive.refinement.assertion.asserted_subgoal import start_indices
 from tailor.executive.refinement.objective.sequence import ActionSequence
 
-ROLL_S = 0.8  # at its speed: so far B21 drove on in traced runs that dropped a subgoal and touched the fridge
+# At the speed beyond the range: so far B21, whose drives began at rest, drove on in traced runs that dropped a subgoal
+# and touched the fridge
+ROLL_S = 0.8
 POSE = ("x", "y", "phi", "v")
 STILL_MPS = 0.05  # beyond the range: as much as an arrival varies
 
@@ -32,14 +34,19 @@ def begins_too_fast(course: ActionSequence) -> bool:
 
 
 def rolled_on(course: ActionSequence) -> ActionSequence | None:
-    """The course from where the robot rolls on to; None if it does not begin too fast."""
+    """The course from where the robot rolls on to until it is as slow as its first action may begin.
+
+    None if it does not begin too fast.
+    """
     start = _start(course)
     if start is None or not begins_too_fast(course):
         return None
-    ids = [course.actions[0].variables[j] for j in start]
+    first = course.actions[0]
+    ids = [first.variables[j] for j in start]
     x, y, phi, v = (course.variables[i].value or 0.0 for i in ids)
+    roll_m = ROLL_S * (v - first.action.parameters[start[-1]].upper)
     variables = list(course.variables)
-    for i, value in ((ids[0], x + ROLL_S * v * math.cos(phi)), (ids[1], y + ROLL_S * v * math.sin(phi))):
+    for i, value in ((ids[0], x + roll_m * math.cos(phi)), (ids[1], y + roll_m * math.sin(phi))):
         variables[i] = variables[i].bound_to(value)
     return replace(course, variables=tuple(variables))
 

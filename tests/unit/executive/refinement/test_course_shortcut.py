@@ -8,6 +8,7 @@ import pytest
 
 from tailor.executive.refinement.assertion.asserted_subgoal import with_subgoal
 from tailor.executive.refinement.course_shortcut import shortcut
+from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tests.support.synthetic_models import PI
 from tests.unit.executive.refinement.synthetic_context import BESIDE, GO_AROUND, beside
@@ -20,12 +21,13 @@ SUBGOAL = {"x": 0.0, "y": 1.0, "phi": 0.0, "v": 0.3}
 EXACT = RefinementSettings(arrival_spread=(), certify_checks=0)
 
 
-def shortened(start, objects=(WALL,), settings=EXACT, go=GO_AROUND):
+def shortened(start, objects=(WALL,), settings=EXACT, go=GO_AROUND, accepted=(0.0, 0.0)):
     """What is found from `start` on the way around a wall that lay between start and goal."""
     decided = with_subgoal(beside((WALL,), [go], [START, GOAL]), 0)
     values = {variable.id: SUBGOAL[variable.quantity] for variable in decided.free()}
     now = beside(objects, [go], [{**START, **start}, GOAL])
-    return shortcut(decided, values, now, BESIDE, settings)
+    choice = Choice(values, (2.0, 2.0), (0.1, 0.1), accepted, 4.0, True)
+    return shortcut(decided, choice, now, BESIDE, settings)
 
 
 def test_subgoal_is_kept_while_the_object_is_in_the_way():
@@ -58,6 +60,17 @@ def test_shortcut_that_probably_fails_is_not_taken_however_cheap_failures_are():
     cheap = replace(EXACT, risk_cost_s=0.5)
     assert shortened(beside_it, settings=cheap) is None
     assert shortened(beside_it, settings=replace(cheap, p_fail_max=0.9)) is not None
+
+
+@pytest.mark.parametrize(
+    ("accepted", "post", "dropped"),
+    [((0.1, 0.1), (0.9, 0.8, 0.2), True), ((0.1, 0.0), (0.9, 0.8, 0.2), False), ((0.1, 0.1), (3.0, 0.8, 0.2), False)],
+    ids=["a post stands beside the subgoal", "less was accepted", "the way by the subgoal is clear"],
+)
+def test_shortcut_may_risk_what_the_course_risks_now_and_did_when_it_was_decided(accepted, post, dropped):
+    beside_it = {"x": -0.8, "y": 0.5}  # the straight way fails in a ninth of the runs
+    cheap = replace(EXACT, risk_cost_s=0.5)
+    assert (shortened(beside_it, (WALL, post), cheap, accepted=accepted) is not None) is dropped
 
 
 def test_robot_in_motion_has_to_be_safe_from_where_it_rolls_on_to_if_drives_begin_at_rest():

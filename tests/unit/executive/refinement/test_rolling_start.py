@@ -42,6 +42,13 @@ def test_robot_rolls_on_ahead_and_the_rest_of_the_course_stays():
     assert after.actions == before.actions
 
 
+def test_robot_rolls_on_for_the_speed_alone_at_which_drives_may_not_begin():
+    """AGILO drives at 0.9 m/s, and its models know starts up to 0.6 m/s: it is soon as slow as that."""
+    upper_mps = next(each.upper for each in GO.parameters if each.quantity == "v")
+    after = rolled_on(course(GO, upper_mps + 0.3))
+    assert [each.value for each in after.variables[:3]] == pytest.approx([0.5 + ROLL_S * 0.3, -0.25, 0.0])
+
+
 def test_action_that_starts_from_no_pose_never_rolls():
     parameters = tuple(replace(each, quantity=f"joint_{each.name}") for each in at_rest(GO).parameters)
     reach = replace(at_rest(GO), parameters=parameters)
