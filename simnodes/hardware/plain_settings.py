@@ -96,6 +96,9 @@ def _faults(settings: PlainSettings) -> list[str]:
     if not topics.cmd_vel or not topics.odom:
         faults.append("topics.cmd_vel and topics.odom: expected a name each")
     names = {"cmd_vel": topics.cmd_vel, "odom": topics.odom, "pose": topics.pose}
+    used = [name.lstrip("/") for name in names.values() if name]
+    twice = dict.fromkeys(name for name in used if used.count(name) > 1)
+    faults += [f"topics: {name!r} is named twice, expected topics of their own" for name in twice]
     faults += [
         f"topics.{each} is {name!r}, expected a name of ROS 2 such as /base/{each}"
         for each, name in names.items()

@@ -21,6 +21,7 @@ WRONG = {
     'robot = "r"\n[bus]\ndomain_id = 233': "bus.domain_id is 233, expected 0 to 232",
     'robot = "r"\n[topics]\ncmd_vel = "**"': "topics.cmd_vel is '**', expected a name of ROS 2 such as /base/cmd_vel",
     'robot = "r"\n[topics]\nodom = "base//odom"': "topics.odom is 'base//odom', expected a name of ROS 2",
+    'robot = "r"\n[topics]\nodom = "/base"\ncmd_vel = "base"': "topics: 'base' is named twice",
     'robot = "r"\n[topics]\npose = "/"': "topics.pose is '/', expected a name of ROS 2",
     "robot = ": "not TOML",
     "robot = " + "[" * 5000: "nested too deeply, expected the description of a robot",
