@@ -34,7 +34,8 @@ def models_of(instance: InstantiatedAction, models: Models, settings: Refinement
     beside_path = context.success_model if context is not None else ""
     for path, loaded in [*required, (action.success_model, models.successes), (beside_path, models.successes)]:
         if path and path not in loaded:
-            raise UsageError(f"action {action.name} needs the model {path}; loaded models: {sorted(loaded)}")
+            known = ", ".join(sorted(loaded)) or "none"
+            raise UsageError(f"action {action.name} needs the model {path}, expected one of those loaded: {known}")
     success = models.successes[action.success_model] if action.success_model else None
     if instance.context and context is not None:
         rows = np.array(instance.context)
