@@ -1,6 +1,7 @@
 """The guard that repeats an attempt: only a measured stall of the machine permits it."""
 
 import os
+import threading
 import time
 from contextlib import nullcontext
 from types import SimpleNamespace
@@ -90,7 +91,16 @@ def test_work_of_the_test_process_itself_is_not_a_stall():
 
 def test_a_meter_measures_on_each_cpu_while_it_is_open():
     allowed = os.sched_getaffinity(0)
-    with StallMeter() as meter:
-        time.sleep(5 * PERIOD_S)
-    assert meter.worst_s > 0.0, "each thread wakes a little late"
+    measured: set[frozenset[int]] = set()
+    every = threading.Event()
+
+    def sleep(period_s):
+        measured.add(frozenset(os.sched_getaffinity(0)))
+        if len(measured) == len(allowed):
+            every.set()
+        time.sleep(period_s)
+
+    with StallMeter(sleep=sleep):
+        assert every.wait(timeout=30.0)
+    assert measured == {frozenset({cpu}) for cpu in allowed}
     assert os.sched_getaffinity(0) == allowed
