@@ -12,7 +12,7 @@ from tailor.schemas.installed import models_folder
 from tailor.schemas.topics import TOPICS
 from tailor.tools.contract.clause import clause
 from tailor.tools.contract.subject import Subject
-from tailor.tools.launch.package_check import faults_of_package
+from tailor.tools.launch.checks.package_check import faults_of_package
 
 SMALL = 0.1  # a command of every axis
 

@@ -14,7 +14,7 @@ from tailor.schemas.installed import domain_names
 from tailor.schemas.messages import VelocityCommand
 from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
-from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
+from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
 
 SOCCER = domains.load("soccer")
 

@@ -26,7 +26,7 @@ from tailor.tools.conformance.live_link import LiveLink, NoDriverError
 from tailor.tools.conformance.report import Report
 from tailor.tools.conformance.simulated_link import SimulatedLink
 from tailor.tools.conformance.suite import clauses, verdicts
-from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.lockstep.worlds import make_world
 
 MAX_FRACTION = 0.3  # of the limits, for all but the fit at top speed

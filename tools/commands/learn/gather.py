@@ -16,7 +16,7 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.contract.trial import try_actions
-from tailor.tools.launch.package_check import check_package
+from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.manifests import check_resumable, manifest_of

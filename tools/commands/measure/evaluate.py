@@ -14,7 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_writable
 from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
 from tailor.tools.evaluations.seeds import seeds_of
-from tailor.tools.launch.package_check import check_package
+from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 

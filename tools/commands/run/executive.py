@@ -26,8 +26,8 @@ from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
 from tailor.tools.cli.system_flags import configure_system, deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
-from tailor.tools.launch.driver_check import check_driver, driver_of, sensor_rates_hz
-from tailor.tools.launch.package_check import check_package
+from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
+from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.recordings.recorded_source import source_entry
 

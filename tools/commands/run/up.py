@@ -17,8 +17,8 @@ from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.launch.hardware import hardware_of
-from tailor.tools.launch.package_check import check_package
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.launch.system import run_system

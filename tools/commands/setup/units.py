@@ -23,7 +23,7 @@ from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_h
 from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.endpoint import bus_settings, configure_bus
 from tailor.tools.cli.system_flags import deployment_from
-from tailor.tools.launch.driver_check import check_driver, driver_of
+from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.launch.hosting import check_own_endpoint
 from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files
 

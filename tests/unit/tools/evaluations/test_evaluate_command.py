@@ -15,7 +15,7 @@ from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import Seeds
-from tailor.tools.launch import package_check
+from tailor.tools.launch.checks import package_check
 from tailor.tools.main import main
 
 CALLS: list[str] = []

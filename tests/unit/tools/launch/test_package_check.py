@@ -10,8 +10,8 @@ from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
 from tailor.tools.commands.run import executive
-from tailor.tools.launch import package_check, scenario_check
-from tailor.tools.launch.package_check import check_package, faults_of_package
+from tailor.tools.launch.checks import package_check, scenario_check
+from tailor.tools.launch.checks.package_check import check_package, faults_of_package
 from tailor.tools.main import main
 
 NAN = float("nan")

@@ -19,9 +19,9 @@ from tailor.schemas.installed import file, spec_of
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
-from tailor.tools.launch.driver_check import faults_of_table, mismatches_of
-from tailor.tools.launch.member_check import faults_of_controller, faults_of_members
-from tailor.tools.launch.scenario_check import faults_of_scenarios
+from tailor.tools.launch.checks.driver_check import faults_of_table, mismatches_of
+from tailor.tools.launch.checks.member_check import faults_of_controller, faults_of_members
+from tailor.tools.launch.checks.scenario_check import faults_of_scenarios
 
 
 def check_package(name: str) -> Domain:

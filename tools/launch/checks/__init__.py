@@ -1,0 +1,1 @@
+"""What a robot's package declares: whether its parts fit together, before anything starts."""
