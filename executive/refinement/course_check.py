@@ -13,6 +13,7 @@ import numpy as np
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.asserted_subgoal import start_indices
+from tailor.executive.refinement.objective.choice import any_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -68,8 +69,3 @@ def _start(sequence: ActionSequence, instance: InstantiatedAction) -> dict[str, 
     return {
         parameters[j].quantity: sequence.variables[instance.variables[j]].value for j in start_indices(instance.action)
     }
-
-
-def any_of(probabilities: Sequence[float]) -> float:
-    """Probability that any of independent failures happens."""
-    return 1.0 - float(np.prod([1.0 - probability for probability in probabilities]))

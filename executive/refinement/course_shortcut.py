@@ -12,8 +12,8 @@ import numpy as np
 
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.subgoal_comparison import with_any_risk
-from tailor.executive.refinement.course_check import any_of, from_here
-from tailor.executive.refinement.objective.choice import Choice, choice_of
+from tailor.executive.refinement.course_check import from_here
+from tailor.executive.refinement.objective.choice import Choice, any_of, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings

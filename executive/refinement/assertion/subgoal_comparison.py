@@ -12,6 +12,7 @@ import numpy as np
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.wide_search import WideSearch
+from tailor.executive.refinement.objective.choice import any_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
@@ -99,8 +100,7 @@ class SubgoalComparison:
         best = self._solvers[self._index].best
         if best is None:
             return 1.0
-        each = [float(prediction.failure[0]) for prediction in self._objectives[self._index].predict(best)]
-        return 1.0 - float(np.prod([1.0 - failure for failure in each]))
+        return any_of([float(prediction.failure[0]) for prediction in self._objectives[self._index].predict(best)])
 
     @property
     def _index(self) -> int:

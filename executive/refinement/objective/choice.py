@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
@@ -23,6 +26,11 @@ class Choice:
     failure: tuple[float, ...]  # predicted probability of failure
     total_s: float
     valid: bool
+
+
+def any_of(probabilities: Sequence[float]) -> float:
+    """Probability that any of independent failures happens."""
+    return 1.0 - float(np.prod([1.0 - probability for probability in probabilities]))
 
 
 def choice_of(objective: SequenceObjective, candidate: Array) -> Choice:
