@@ -48,10 +48,16 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
         if getattr(domain, field) != getattr(spec, field):
             yield f"{where}: {field} is '{getattr(domain, field)}', expected '{getattr(spec, field)}' by the spec"
     yield from (f"{where}: {fault}" for fault in _faults_of_topics(domain))
-    yield from (f"{where}: {fault}" for fault in _faults_of_pddl(domain))
+    pddl: planning.Domain | None = None
+    try:
+        pddl = planning.parse_domain(domain.pddl)
+    except planning.PddlError as error:
+        yield f"{where}: pddl: {error}"
+    if pddl is not None:
+        yield from (f"{where}: {fault}" for fault in _faults_of_executables(domain, pddl))
     for action_name, action in domain.actions.items():
         yield from (f"{where}: actions['{action_name}']: {fault}" for fault in _faults_of_action(domain, action))
-    yield from faults_of_scenarios(spec, domain)
+    yield from faults_of_scenarios(spec, pddl)
     yield from (f"{spec.driver}: {fault}" for fault in _faults_of_driver(spec, domain))
 
 
@@ -73,12 +79,8 @@ def _faults_of_topics(domain: Domain) -> Iterator[str]:
     yield from (f"required: '{name}' is none of sensors" for name in domain.required if name not in domain.sensors)
 
 
-def _faults_of_pddl(domain: Domain) -> Iterator[str]:
-    try:
-        schemas = {schema.name: schema for schema in planning.parse_domain(domain.pddl).actions}
-    except planning.PddlError as error:
-        yield f"pddl: {error}"
-        return
+def _faults_of_executables(domain: Domain, pddl: planning.Domain) -> Iterator[str]:
+    schemas = {schema.name: schema for schema in pddl.actions}
     yield from (f"executables: no action of the PDDL is '{name}'" for name in domain.executables if name not in schemas)
     yield from (f"executables: '{name}' of the PDDL is missing" for name in schemas if name not in domain.executables)
     for symbolic, executable in domain.executables.items():

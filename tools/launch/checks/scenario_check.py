@@ -11,19 +11,18 @@ from typing import Any
 import numpy as np
 
 from tailor.executive import domains, planning
-from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, part
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.parsed_files import shown
 
 
-def faults_of_scenarios(spec: DomainSpec, domain: Domain) -> Iterator[str]:
-    """All faults of a package's scenarios, each with file and field."""
+def faults_of_scenarios(spec: DomainSpec, pddl: planning.Domain | None) -> Iterator[str]:
+    """All faults of a package's scenarios, each with file and field; without its PDDL domain, none in problems."""
     folder = None if spec.generator else file(spec, "scenarios")
     if folder is not None and folder.is_dir():
         names = sorted(entry.name for entry in folder.iterdir() if entry.name.endswith(".toml"))
-        files = _ScenarioFiles(spec, domain, folder)
+        files = _ScenarioFiles(spec, pddl, folder)
         found = [f"{spec.scenarios}/{name}: {fault}" for name in names for fault in files.faults(name)]
         if found:
             yield from found
@@ -40,7 +39,7 @@ def faults_of_scenarios(spec: DomainSpec, domain: Domain) -> Iterator[str]:
 @dataclass(frozen=True, slots=True)
 class _ScenarioFiles:
     spec: DomainSpec
-    domain: Domain
+    pddl: planning.Domain | None
     folder: Traversable
 
     def faults(self, name: str) -> Iterator[str]:
@@ -68,12 +67,12 @@ class _ScenarioFiles:
     def _faults_of_problem(self, name: str) -> Iterator[str]:
         try:
             text = self.folder.joinpath(name).read_text(encoding="utf-8")
-            planning.parse_problem(text, planning.parse_domain(self.domain.pddl), source=name)
+            if self.pddl is not None:
+                planning.parse_problem(text, self.pddl, source=name)
         except UnicodeDecodeError:
             yield f"{name}: not UTF-8"
         except planning.PddlError as error:
-            if str(error).startswith(f"{name}:"):  # otherwise it is one of the domain, which has its own line
-                yield str(error)
+            yield str(error)
 
 
 def _faults_of_entries(folder: Traversable, declared: Mapping[str, Any]) -> Iterator[str]:
