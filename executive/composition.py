@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,17 +71,17 @@ def load_models(robot: str, zoo: str = "") -> Models:
 
     folder = Path(zoo) if zoo else models_folder(robot)
     durations, successes = load_robot(robot, folder, required_ranges(robot))
-    cards = {path: model.card for path, model in durations.items()}
-    cards |= {path: model.card for path, model in successes.items()}
+    loaded: dict[str, Any] = {**durations, **successes}
     for action in domains.load(spec_of_robot(robot).name).actions.values():
         for path in (action.duration_model, action.success_model):
-            if path in cards and action.arguments is unchanged:
-                _check_arguments(action, [each["name"] for each in cards[path]["arguments"]], folder / robot / path)
+            if path in loaded and action.arguments is unchanged:
+                _check_arguments(action, loaded[path].card, folder / robot / path)
     return Models(durations, successes)
 
 
-def _check_arguments(action: Action, taken: Sequence[str], model: Path) -> None:
+def _check_arguments(action: Action, card: Mapping[str, Any], model: Path) -> None:
     """Raise UsageError unless the parameters of an action are the arguments of its model, in their order."""
+    taken = [each["name"] for each in card["arguments"]]
     declared = [parameter.name for parameter in action.parameters]
     if declared != taken:
         raise UsageError(f"{model}: takes {' '.join(taken)}, expected {' '.join(declared)} by the action {action.name}")
