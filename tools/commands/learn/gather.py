@@ -19,7 +19,6 @@ from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
-from tailor.tools.learning.gathering.manifests import check_resumable, manifest_of
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
@@ -154,10 +153,7 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
         )
         for action in actions
     ]
-    for spec in specs:  # all, before the first folder is made: one without episodes would pass for a data set
-        check_resumable(spec.folder, manifest_of(spec) if arguments.resume else {}, arguments.resume)
-    for spec in specs:
-        random_episodes.prepare(spec, arguments.resume)
+    random_episodes.prepare_all(specs, arguments.resume)
     figures = []
     for spec in specs:
         try:

@@ -107,17 +107,35 @@ def missing_parts(spec: DataSetSpec) -> list[int]:
 
 
 def prepare(spec: DataSetSpec, resume: bool) -> None:
-    """Create the folder with its manifest, or check that it can be resumed.
+    """See `prepare_all`."""
+    prepare_all([spec], resume)
+
+
+def prepare_all(specs: Sequence[DataSetSpec], resume: bool) -> None:
+    """Create folders with their manifests, or check that they can be resumed.
+
+    All are checked before the first one is made: a folder without episodes would pass for a data set.
 
     Raises:
-      UsageError: The folder holds another data set or a larger one, or the same one without `resume`; or the robot's
+      UsageError: A folder holds another data set or a larger one, or the same one without `resume`; or the robot's
         sampler draws no objects where some are asked for; or there are too many episodes.
     """
+    manifests = [_checked(spec, resume) for spec in specs]
+    for spec, manifest in zip(specs, manifests, strict=True):
+        _make(spec, manifest)
+
+
+def _checked(spec: DataSetSpec, resume: bool) -> dict[str, Any]:
+    """The manifest of a data set that can be gathered."""
     check_number(spec.episodes, spec.objects)
     if spec.beside:
         check_sampler(domains.load(spec.domain), spec.objects)
     manifest = manifest_of(spec)
     check_resumable(spec.folder, manifest, resume)
+    return manifest
+
+
+def _make(spec: DataSetSpec, manifest: dict[str, Any]) -> None:
     spec.folder.mkdir(parents=True, exist_ok=True)
     expected = {part_path(spec, first).name for first in range(0, spec.episodes, PART)}
     for path in (*spec.folder.glob("*.tmp"), *spec.folder.glob("part-*.parquet")):
