@@ -58,6 +58,11 @@ class QueryableSource:
         return self._read(query)
 
 
+def no_service(key: str) -> str:
+    """What a call returns where nobody declares the service."""
+    return f"no service at {key}"
+
+
 def text_request(query: Any) -> ServiceRequest:
     """The request in a query whose payload is text; the response is text as well."""
     payload = query.payload

@@ -17,7 +17,7 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
-from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, text_request
+from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, no_service, text_request
 from tailor.runtime.bus.wires import MAX_PLAIN_BYTES, RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
@@ -217,7 +217,7 @@ class Session:
                 return True, reply.ok.payload.to_string()
             error = "" if reply.err is None else reply.err.payload.to_string()
             return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
-        return False, f"no service at {key}"
+        return False, no_service(key)
 
     def subscribe_all(self, pattern: str, queue: IngestQueue | None = None) -> tuple[IngestQueue, Subscriptions]:
         """Subscribe to all keys that match a pattern of plain keys; undeclare the returned subscriptions at the end.

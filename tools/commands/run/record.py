@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.live import Live
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
-from tailor.runtime.bus.service import ServiceServer
+from tailor.runtime.bus.service import ServiceServer, no_service
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.recordings.new_file import EXISTS
@@ -110,7 +110,7 @@ def _write(arguments: argparse.Namespace) -> int:
     """Request a snapshot; 0 if it is accepted, 1 if it is declined, 2 if nobody keeps one."""
     with open_bus(arguments, "people", sender=sender_of(arguments)) as session:
         accepted, response = session.call(SNAPSHOT_KEY, "requested")
-    absent = response == f"no service at {SNAPSHOT_KEY}"
+    absent = response == no_service(SNAPSHOT_KEY)
     if absent:
         response += ", expected a running `tailor record --snapshot S`"
     if arguments.json:
