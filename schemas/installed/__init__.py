@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import traceback
 from collections.abc import Iterable
 from importlib import import_module, resources
 from importlib.resources.abc import Traversable
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.package_errors import raised_text
 from tailor.schemas.packages.discovery import Package, packages
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
@@ -105,12 +105,6 @@ def instance(spec: DomainSpec, field: str) -> Any:
         raise
     except (Exception, SystemExit) as error:
         raise UsageError(f"domain {spec.name}: {field} = '{getattr(spec, field)}': {raised_text(error)}") from error
-
-
-def raised_text(error: BaseException) -> str:
-    """What the code of a package raised, and the line that raised it, in one line for people."""
-    line = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {' '.join(str(error).split())} ({Path(line.filename).name}, line {line.lineno})"
 
 
 def file(spec: DomainSpec, field: str) -> Traversable:

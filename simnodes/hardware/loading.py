@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import raised_text
+from tailor.schemas.installed.package_errors import raised_text
 from tailor.simnodes.hardware.interface import Hardware
 
 POSITIVE = ("write_hz", "open_s", "read_s", "write_s")  # of a Hardware

@@ -8,7 +8,7 @@ from typing import Any
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import raised_text
+from tailor.schemas.installed.package_errors import raised_text
 from tailor.schemas.parsed_files import read_toml, shown
 from tailor.schemas.topics import MAX_RATE_HZ, TOPICS, is_rate, nominal_rates_hz
 from tailor.simnodes.driver import command_values
