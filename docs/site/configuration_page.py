@@ -12,7 +12,7 @@ import textwrap
 import typing
 from typing import Any
 
-from tailor.tools.cli.deployment import Deployment
+from tailor.tools.cli.systems.deployment import Deployment
 
 HEAD = """# Configuration
 

@@ -3,8 +3,8 @@
 import pytest
 
 from tailor.runtime.stopping import Stop
-from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
+from tailor.tools.cli.systems.deployment import Deployment, executive_config
 from tailor.tools.commands.run.letters import recorded_track
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig

@@ -14,7 +14,7 @@ from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
 BY_CERTIFICATES = ("tls/", "quic/")  # protocols that need keys

@@ -9,7 +9,7 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
-from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch.senders import Senders
 
 EXECUTIVE_SILENCE_NS = 1_000_000_000  # ten ticks

@@ -9,8 +9,8 @@ from contextlib import ExitStack, contextmanager
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRun, open_run
-from tailor.tools.cli.endpoint import sender_of
+from tailor.tools.cli.systems.bus_renewal import BusRun, open_run
+from tailor.tools.cli.systems.endpoint import sender_of
 
 
 class RecorderBus:

@@ -13,9 +13,9 @@ from rich.live import Live
 from tailor.runtime.aside import aside
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
-from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
-from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.keyboard import Keyboard
+from tailor.tools.cli.systems.bus_renewal import BusRun, open_run, opened_anew
+from tailor.tools.cli.systems.endpoint import bus_settings, open_bus
 from tailor.tools.operator.current_button import CurrentButton
 from tailor.tools.status.panel import panel
 from tailor.tools.status.picture import Picture

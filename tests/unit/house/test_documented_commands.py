@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tailor.tools.cli.deployment import Deployment
+from tailor.tools.cli.systems.deployment import Deployment
 from tailor.tools.commands.measure.evaluate import EVALUATIONS, RESUME
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import ROOT

@@ -11,7 +11,7 @@ from tailor.executive.planning import parse_domain, parse_problem, validate
 from tailor.runtime.planners import named
 from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import Deployment, executive_config
+from tailor.tools.cli.systems.deployment import Deployment, executive_config
 from tailor.tools.main import main
 from tailor.tools.plan_search.sources import external
 from tests.support.planning_problems import DATA, own

@@ -10,7 +10,7 @@ import pytest
 from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.errors import UsageError
 from tailor.schemas.settings import from_table
-from tailor.tools.cli.deployment import Deployment
+from tailor.tools.cli.systems.deployment import Deployment
 
 
 def test_nested_tables_become_nested_settings():

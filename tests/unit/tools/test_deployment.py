@@ -9,8 +9,8 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.deliberation.context import PlannerCommand
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import executive_config
-from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.system_flags import configure_system, deployment_from
 
 
 def config(tmp_path, text, *flags):

@@ -16,8 +16,8 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
-from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.output_files import check_output, check_writable, whole_output
+from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
 from tailor.tools.conformance import report as reports
 from tailor.tools.conformance.bench import Bench, NotPossible
 from tailor.tools.conformance.clause import Verdict

@@ -22,9 +22,16 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
-from tailor.tools.cli.bus_end import BusEnd
-from tailor.tools.cli.endpoint import bus_settings, checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.bus_end import BusEnd
+from tailor.tools.cli.systems.endpoint import (
+    bus_settings,
+    checked_sender,
+    configure_bus,
+    configure_sender,
+    open_bus,
+    sender_of,
+)
 from tailor.tools.launch.hardware import hardware_of
 
 

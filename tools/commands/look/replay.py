@@ -26,9 +26,9 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Clock
 from tailor.schemas.topics import TOPICS
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import check_within
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
 from tailor.tools.recordings.substitution import OMITTED, SUBSTITUTES, armed_for, live_executive
 

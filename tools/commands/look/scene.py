@@ -21,9 +21,9 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
-from tailor.tools.cli.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
 from tailor.tools.cli.output_files import beside, check_output, whole_output
+from tailor.tools.cli.systems.bus_renewal import BusRun, open_run, opened_anew
+from tailor.tools.cli.systems.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes

@@ -16,8 +16,8 @@ from dataclasses import asdict
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.number_checks import finite
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.status.live_view import LiveView
 from tailor.tools.status.panel import panel

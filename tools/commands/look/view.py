@@ -11,9 +11,9 @@ from rich.console import Console
 from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.cli.output_files import beside, check_output, whole_output
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.page import page

@@ -15,8 +15,8 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
-from tailor.tools.cli.endpoint import checked_sender, configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, open_bus
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 
 POLL_S = 0.01

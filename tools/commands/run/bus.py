@@ -14,8 +14,8 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.processes.supervised import State
 from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import Stop, stop_on_signals
-from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_hosting_flags
-from tailor.tools.cli.endpoint import bus_settings, configure_bus
+from tailor.tools.cli.systems.bus_settings import BusSettings, configure_hosting, with_hosting_flags
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
 from tailor.tools.launch.hosting import gateways, hosted_bus
 
 PERIOD_S = 0.05

@@ -17,9 +17,9 @@ from rich.table import Table
 from tailor.executive.composition import ExecutiveConfig, build_context
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
 from tailor.tools.cli.output_files import whole_output
+from tailor.tools.cli.systems.deployment import Deployment, executive_config
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.track import Track
 from tailor.tools.launch.hosting import private_bus

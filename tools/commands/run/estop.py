@@ -11,7 +11,7 @@ import sys
 from collections.abc import Mapping
 
 from tailor.schemas.messages import DriverState
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, open_bus
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 

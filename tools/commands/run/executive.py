@@ -21,10 +21,10 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.ros_time import wrapped_ns
-from tailor.tools.cli.bus_end import BusEnd
-from tailor.tools.cli.deployment import executive_config
-from tailor.tools.cli.endpoint import checked_sender, configure_sender, open_bus, sender_of
-from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.cli.systems.bus_end import BusEnd
+from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.endpoint import checked_sender, configure_sender, open_bus, sender_of
+from tailor.tools.cli.systems.system_flags import configure_system, deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.launch.checks.package_check import check_package

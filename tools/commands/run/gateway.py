@@ -15,7 +15,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.services import ROLES
-from tailor.tools.cli.endpoint import bus_settings, configure_bus
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
 NICENESS = 5  # whoever floods it from outside competes with the robot's processes for the CPU

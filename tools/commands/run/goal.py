@@ -10,8 +10,8 @@ import json
 import sys
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import configure_bus, open_bus
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -19,8 +19,8 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import JointState
-from tailor.tools.cli.deployment import Deployment, executive_config
 from tailor.tools.cli.live_status import screen
+from tailor.tools.cli.systems.deployment import Deployment, executive_config
 from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system

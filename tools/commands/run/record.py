@@ -31,9 +31,9 @@ from tailor.runtime.recordings.snapshot import SnapshotBuffer
 from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.recordings.recorder_bus import RecorderBus
 
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9

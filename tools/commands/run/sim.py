@@ -19,9 +19,9 @@ from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
-from tailor.tools.cli.bus_end import BusEnd
-from tailor.tools.cli.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
-from tailor.tools.cli.system_flags import deployment_from
+from tailor.tools.cli.systems.bus_end import BusEnd
+from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.cli.systems.system_flags import deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world

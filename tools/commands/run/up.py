@@ -13,10 +13,10 @@ from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
-from tailor.tools.cli.bus_settings import configure_hosting, with_hosting_flags
-from tailor.tools.cli.deployment import executive_config
 from tailor.tools.cli.live_status import screen
-from tailor.tools.cli.system_flags import configure_system, deployment_from
+from tailor.tools.cli.systems.bus_settings import configure_hosting, with_hosting_flags
+from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.system_flags import configure_system, deployment_from
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.launch.hardware import hardware_of
 from tailor.tools.launch.processes import LaunchConfig

@@ -15,7 +15,7 @@ from typing import get_args
 from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
 from tailor.schemas.errors import UsageError
 from tailor.schemas.services import Role
-from tailor.tools.cli.bus_settings import KEYS
+from tailor.tools.cli.systems.bus_settings import KEYS
 from tailor.tools.keys.registry import (
     REVOKED,
     ROUTER,

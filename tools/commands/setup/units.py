@@ -19,10 +19,10 @@ from tailor.executive.composition import build_context
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
-from tailor.tools.cli.bus_settings import BusSettings, configure_hosting, with_hosting_flags
-from tailor.tools.cli.deployment import executive_config
-from tailor.tools.cli.endpoint import bus_settings, configure_bus
-from tailor.tools.cli.system_flags import deployment_from
+from tailor.tools.cli.systems.bus_settings import BusSettings, configure_hosting, with_hosting_flags
+from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
+from tailor.tools.cli.systems.system_flags import deployment_from
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.launch.hosting import check_own_endpoint
 from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files

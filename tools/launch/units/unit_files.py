@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from tailor.runtime import realtime
 from tailor.runtime.processes.child import tailor
 from tailor.schemas.ros2.profiles import PLAIN
-from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
 from tailor.tools.launch.units import unit_settings

@@ -12,9 +12,9 @@ from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.stopping import Stop
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_renewal import BusRun, open_run, opened_anew
-from tailor.tools.cli.endpoint import bus_settings, open_bus
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.systems.bus_renewal import BusRun, open_run, opened_anew
+from tailor.tools.cli.systems.endpoint import bus_settings, open_bus
 from tailor.tools.operator.current_button import CurrentButton
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.broadcast import EventBroadcast

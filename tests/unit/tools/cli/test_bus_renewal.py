@@ -12,8 +12,8 @@ import pytest
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder
 from tailor.schemas.errors import UnreachableError, UsageError
-from tailor.tools.cli import bus_renewal
-from tailor.tools.cli.bus_renewal import CHECK_NS, GONE_NS, BusRenewal, open_run, opened_anew
+from tailor.tools.cli.systems import bus_renewal
+from tailor.tools.cli.systems.bus_renewal import CHECK_NS, GONE_NS, BusRenewal, open_run, opened_anew
 
 ENDPOINT = "tcp/127.0.0.1:7999"
 GONE = GONE_NS + CHECK_NS

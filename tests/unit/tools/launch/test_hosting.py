@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch import hosting
 from tailor.tools.launch.hosting import free_endpoint, gateways, hosted_bus, private_bus
 from tailor.tools.main import main

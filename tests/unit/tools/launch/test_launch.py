@@ -5,8 +5,8 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
-from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.live_status import processes_text
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
     LaunchConfig,

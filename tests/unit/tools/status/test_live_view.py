@@ -10,8 +10,8 @@ import pytest
 
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli import bus_renewal
-from tailor.tools.cli.bus_renewal import BusRun
+from tailor.tools.cli.systems import bus_renewal
+from tailor.tools.cli.systems.bus_renewal import BusRun
 from tailor.tools.status import live_view
 from tailor.tools.status.live_view import LiveView
 from tailor.tools.status.stop_key import StopKey

@@ -10,7 +10,7 @@ import pytest
 
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli import bus_renewal
+from tailor.tools.cli.systems import bus_renewal
 from tailor.tools.viewer.live import live_run
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.timeline import Event

@@ -13,7 +13,7 @@ from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.services import Role
-from tailor.tools.cli.endpoint import bus_settings, open_bus
+from tailor.tools.cli.systems.endpoint import bus_settings, open_bus
 
 GONE_NS = 1_000_000_000  # without a router; zenoh reconnects to an open bus by itself before
 CHECK_NS = 200_000_000

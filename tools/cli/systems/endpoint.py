@@ -17,8 +17,8 @@ from tailor.runtime.bus.zenoh_config import DEFAULT_ENDPOINT
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.profiles import PROFILES
 from tailor.schemas.services import Role
-from tailor.tools.cli.bus_settings import BusSettings
 from tailor.tools.cli.given_options import given_options
+from tailor.tools.cli.systems.bus_settings import BusSettings
 
 
 def configure_bus(parser: argparse.ArgumentParser) -> None:
@@ -46,11 +46,11 @@ def bus_settings(arguments: argparse.Namespace) -> BusSettings:
     """The bus that the flags select. The whole deployment file is checked, so that no mistake in it goes unnoticed.
 
     Raises:
-      UsageError: See `tailor.tools.cli.deployment.read_deployment`.
+      UsageError: See `tailor.tools.cli.systems.deployment.read_deployment`.
     """
     settings = BusSettings()
     if arguments.config:
-        from tailor.tools.cli.deployment import read_deployment
+        from tailor.tools.cli.systems.deployment import read_deployment
 
         settings = read_deployment(arguments.config).bus
     return with_bus_flags(settings, arguments)

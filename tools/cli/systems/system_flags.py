@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from tailor.tools.cli.deployment import Deployment, read_deployment
-from tailor.tools.cli.endpoint import configure_bus, with_bus_flags
 from tailor.tools.cli.number_checks import checked
+from tailor.tools.cli.systems.deployment import Deployment, read_deployment
+from tailor.tools.cli.systems.endpoint import configure_bus, with_bus_flags
 
 
 def configure_system(parser: argparse.ArgumentParser) -> None:

@@ -11,7 +11,7 @@ from tailor.runtime.processes.planner_process import split_command
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.settings import from_table
-from tailor.tools.cli.bus_settings import BusSettings
+from tailor.tools.cli.systems.bus_settings import BusSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ import time
 from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop
 from tailor.schemas.errors import UnreachableError
-from tailor.tools.cli.bus_renewal import BusRenewal
+from tailor.tools.cli.systems.bus_renewal import BusRenewal
 
 
 class BusEnd:
