@@ -63,7 +63,7 @@ class Chain:
             pose, axes, places = self._frames(angles)
             off, turned = _minus(goal.place, pose.place), rotation_error(pose.turn, goal.turn)
             if math.hypot(*off) < self.reached_m and math.hypot(*turned) < self.reached_rad:
-                return angles
+                return angles if _is_within_a_right_angle(pose.turn, goal.turn) else None
             columns = [
                 (*_cross(axis, _minus(pose.place, place)), *_scaled(axis, self.arm_m))
                 for axis, place in zip(axes, places, strict=True)
@@ -107,6 +107,12 @@ def rotation_error(now: Turn, goal: Turn) -> Vector:
     for axis, wanted in zip(now, goal, strict=True):
         total = _plus(total, _scaled(_cross(axis, wanted), 0.5))
     return total
+
+
+def _is_within_a_right_angle(now: Turn, goal: Turn) -> bool:
+    """Whether less than a right angle is between two orientations: the sine, half a circle off, is zero as well."""
+    trace = sum(a * b for axis, wanted in zip(now, goal, strict=True) for a, b in zip(axis, wanted, strict=True))
+    return trace > 1.0  # 1 + 2 cos(angle)
 
 
 def _least_squares(columns: Sequence[tuple[float, ...]], error: Sequence[float], damping: float) -> Joints:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -55,3 +56,18 @@ def test_solution_keeps_to_the_ranges_of_joints() -> None:
     behind = ARM.forward((2.4, -1.0, 2.0, 0.0, -1.0, 0.0))  # the first joint turns by 1.6 at most
     found = ARM.solve(behind, HOME)
     assert found is None or abs(found[0]) <= 1.6
+
+
+@pytest.mark.parametrize("axis", [X, Y, Z])
+def test_hand_that_is_half_a_circle_off_has_not_reached_its_pose(axis: tuple[float, float, float]) -> None:
+    hand = ARM.forward(HOME)
+    turned = about(axis, math.pi)
+    backwards = HandPose(hand.place, tuple(_composed(turned, column) for column in hand.turn))  # type: ignore[arg-type]
+    assert math.hypot(*rotation_error(hand.turn, backwards.turn)) < ARM.reached_rad, "the sine sees no difference"
+    found = ARM.solve(backwards, HOME)
+    assert found is None or math.dist(sum(ARM.forward(found).turn, ()), sum(backwards.turn, ())) < 2 * ARM.reached_rad
+
+
+def _composed(turn: tuple[tuple[float, float, float], ...], v: tuple[float, float, float]) -> tuple[float, ...]:
+    """A vector, turned."""
+    return tuple(sum(column[k] * part for column, part in zip(turn, v, strict=True)) for k in range(3))
