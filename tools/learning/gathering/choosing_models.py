@@ -13,6 +13,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare
 from tailor.tools.parallel.software import models_sha256
 
@@ -82,5 +83,6 @@ def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], r
         "scenarios": list(chosen.scenarios),
         **({"profile": chosen.profile} if chosen.profile else {}),
         "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
+        "runs_sha256": runs_sha256(chosen.domain),
     }
     prepare(chosen.domain, chosen.folder, actions, entries, runs, resume)

@@ -1,13 +1,14 @@
 """Active gathering: the optimiser's choices on which the models disagree most, the same bits however interrupted."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
 import pytest
 
 from tailor.models.episodes.episodes import read_data_set
-from tailor.tools.learning.gathering import active_episodes
+from tailor.tools.learning.gathering import active_episodes, choosing_models
 from tailor.tools.learning.gathering.active_episodes import Active, run_active, selected
 from tailor.tools.learning.gathering.refined_choices import Choice
 from tailor.tools.main import main
@@ -43,6 +44,15 @@ def test_episodes_begin_where_the_optimiser_chose(gathered: Path) -> None:
     assert [each.arguments.tolist() for each in data.episodes] == [row[2] for row in largest]
     assert all(each.finished and len(each.ticks) > 2 and not each.on_policy for each in data.episodes)
     assert data.manifest["source"].startswith("lock-step, choices with the largest disagreement")
+
+
+def test_choices_of_another_executive_are_not_mixed_in(gathered: Path, tmp_path: Path, capsys, monkeypatch) -> None:
+    """Equal models choose otherwise by other rules of refinement."""
+    assert re.fullmatch("[0-9a-f]{64}", read_data_set(gathered / "reach").manifest["runs_sha256"])
+    folder = shutil.copytree(gathered, tmp_path / "of-before")
+    monkeypatch.setattr(choosing_models, "runs_sha256", lambda domain: "f" * 64)
+    assert main(["gather", "powercube", *FLAGS, "--out", str(folder), "--resume"]) == 2
+    assert "was gathered with runs_sha256" in capsys.readouterr().err
 
 
 def test_an_interrupted_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path, capsys) -> None:
