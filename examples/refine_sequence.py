@@ -3,11 +3,11 @@
 import numpy as np
 
 from tailor.executive import domains
-from tailor.executive.composition import load_models
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
+from tailor.executive.robot_models import load_models
 
 go = domains.load("soccer").actions["goToPose"]
 known = {"start": (-2.0, 0.0, 0.0, 0.0), "waypoint": (0.0, 1.0, None, None), "goal": (-1.0, -1.0, 3.14, 0.0)}

@@ -5,22 +5,17 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
-from tailor.executive.interfaces.action import Action, unchanged
 from tailor.executive.interfaces.models import Models
-from tailor.executive.refinement.objective.sequence import InstantiatedAction
-from tailor.executive.refinement.objective.stage_models import models_of
+from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import models_folder, spec_of_robot
 from tailor.schemas.settings import from_table
 from tailor.schemas.topics import is_rate, key_of
 
 ModelLoader = Callable[[str, str], Models]  # of a robot, from a folder; empty: the shipped one
-PLACE_UNIT = "m"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,63 +53,6 @@ def build_context(
     scenario, _ = domains.seeded_scenario(config.domain, config.scenario, config.settings.seed)
     models = (load or load_models)(domain.robot, config.zoo)
     return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns)
-
-
-def load_models(robot: str, zoo: str = "") -> Models:
-    """Load a robot's action models.
-
-    Raises:
-      UsageError: A missing or altered model, one whose training range is smaller than its action's, or one that takes
-        other arguments.
-    """
-    from tailor.models.runtime import load_robot  # and onnxruntime: a simulator or launcher has no use for 30 MB of it
-
-    folder = Path(zoo) if zoo else models_folder(robot)
-    durations, successes = load_robot(robot, folder, required_ranges(robot))
-    loaded: dict[str, Any] = {**durations, **successes}
-    for action in domains.load(spec_of_robot(robot).name).actions.values():
-        for path in (action.duration_model, action.success_model):
-            if path in loaded and action.arguments is unchanged:
-                _check_arguments(action, loaded[path].card, folder / robot / path)
-    return Models(durations, successes)
-
-
-def _check_arguments(action: Action, card: Mapping[str, Any], model: Path) -> None:
-    """Raise UsageError unless the parameters of an action are the arguments of its model, in their order."""
-    taken = [each["name"] for each in card["arguments"]]
-    declared = [parameter.name for parameter in action.parameters]
-    if declared != taken:
-        raise UsageError(f"{model}: takes {' '.join(taken)}, expected {' '.join(declared)} by the action {action.name}")
-
-
-def check_models(context: Context) -> None:
-    """Raise UsageError, naming action and model, if an action needs a model that is not loaded.
-
-    A tick would find out while the robot is armed. Which ones are needed depends on the settings, too: energy counts
-    only where it has a weight.
-    """
-    missing = []
-    for action in context.domain.actions.values():
-        try:
-            models_of(InstantiatedAction(action, 0, ()), context.models, context.settings.refinement)
-        except UsageError as error:
-            missing.append(str(error))
-    if missing:
-        raise UsageError("; ".join(missing))
-
-
-def required_ranges(robot: str) -> dict[str, dict[str, tuple[float, float]]]:
-    """Ranges that a robot's actions declare, by the folder of their models and by parameter.
-
-    Places are left out: models use their distance and direction, which single parameters do not bound.
-    """
-    ranges: dict[str, dict[str, tuple[float, float]]] = {}
-    for action in domains.load(spec_of_robot(robot).name).actions.values():
-        declared = ranges.setdefault(action.duration_model.rpartition("/")[0], {})
-        for p in (parameter for parameter in action.parameters if parameter.unit != PLACE_UNIT):
-            lower, upper = declared.get(p.name, (p.lower, p.upper))
-            declared[p.name] = min(lower, p.lower), max(upper, p.upper)
-    return ranges
 
 
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:

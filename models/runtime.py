@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tailor.models.bounds.model_bounds import ModelBounds, model_bounds
 from tailor.models.cards.card import KINDS, SUCCESS_KINDS, UNITS, Card, card_path
-from tailor.models.cards.checks import check_identity, check_place, check_ranges
+from tailor.models.cards.checks import check_identity, check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.features.spaces import feature_spaces
 from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session
@@ -33,10 +33,13 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
       zoo: Folder of models, None for the one that ships.
 
     Raises:
-      UsageError: The file or its card is missing or damaged, or they do not agree; the message names both values.
+      UsageError: The file or its card is missing or damaged, or they do not agree, or it is another model than the name
+        says; the message names both values.
     """
     path = model if isinstance(model, Path) else _in_zoo(model, zoo or ZOO)
     content, card = read_model(path)
+    if isinstance(model, str):
+        check_place(card, model, path)
     session = _session(content, path)
     check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
     bounds = model_bounds(content, str(card["features"]), _number_of_features(card, path))
@@ -45,16 +48,12 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
     return loaded
 
 
-def load_robot(
-    robot: str, zoo: Path | None = None, declared: Mapping[str, Mapping[str, tuple[float, float]]] | None = None
-) -> tuple[dict[str, OnnxDuration], dict[str, OnnxSuccess]]:
+def load_robot(robot: str, zoo: Path | None = None) -> tuple[dict[str, OnnxDuration], dict[str, OnnxSuccess]]:
     """Load all models of a robot: durations (and energies) and successes by "action/kind".
 
     Args:
       robot: Folder in the zoo.
       zoo: Folder of models, None for the one that ships.
-      declared: Ranges (lower, upper) that the robot's actions declare, by action and argument; a model that was trained
-        on less is refused.
 
     Returns:
       Models of durations and energies, and models of success.
@@ -70,9 +69,7 @@ def load_robot(
     durations: dict[str, OnnxDuration] = {}
     successes: dict[str, OnnxSuccess] = {}
     for name in _names(folder):
-        model = load_model(folder / f"{name}.onnx")
-        check_place(model.card, f"{robot}/{name}", folder)
-        check_ranges(model.card, (declared or {}).get(name.split("/", maxsplit=1)[0], {}), folder / name)
+        model = load_model(f"{robot}/{name}", zoo)
         if isinstance(model, OnnxDuration):
             durations[name] = model
         elif isinstance(model, OnnxSuccess):

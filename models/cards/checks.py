@@ -1,4 +1,4 @@
-"""Checks that a model is the one that its card, its place and its robot expect. Standard library only."""
+"""Checks that a model is the one that its card and its place expect. Standard library only."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from typing import Any
 
 from tailor.models.cards.card import Card, identity
 from tailor.schemas.errors import UsageError
-
-COVER_TOLERANCE = 1e-6  # of the bounds of a range, for rounded decimals
 
 
 def check_identity(inside: Mapping[str, str], shape: Sequence[Any], card: Card, path: Path) -> None:
@@ -41,21 +39,3 @@ def check_place(card: Card, place: str, folder: Path) -> None:
     name = f"{card['robot']}/{card['action']}/{card['kind']}"
     if name != place:
         raise UsageError(f"{folder}: holds a model of {name}, expected {place} by its place in the zoo")
-
-
-def check_ranges(card: Card, declared: Mapping[str, tuple[float, float]], path: Path) -> None:
-    """Check that a model was trained on the ranges, by argument, that its action declares.
-
-    Raises:
-      UsageError: It was trained on a smaller range, or lacks the argument.
-    """
-    trained = {argument["name"]: argument for argument in card["arguments"]}
-    for name, (lower, upper) in declared.items():
-        if name not in trained:
-            raise UsageError(f"{path}: the model has no argument '{name}' (its arguments: {', '.join(trained)})")
-        low, high = trained[name]["lower"], trained[name]["upper"]
-        if lower < low - COVER_TOLERANCE or upper > high + COVER_TOLERANCE:
-            raise UsageError(
-                f"{path}: {name} was trained in [{low:g}, {high:g}] {trained[name]['unit']}, "
-                f"expected to cover [{lower:g}, {upper:g}] as the action declares"
-            )

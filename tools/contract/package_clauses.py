@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tailor.executive.composition import load_models
 from tailor.executive.interfaces.outlet import messages_of, outlets_of
+from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.schemas.topics import TOPICS

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import astuple
 
-from tailor.executive.composition import PLACE_UNIT
+from tailor.executive.robot_models import PLACE_UNIT
 from tailor.schemas.messages import Message
 from tailor.schemas.packages.scene import Scene, on_map
 from tailor.tools.contract.clause import clause

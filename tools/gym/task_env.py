@@ -14,7 +14,6 @@ import numpy as np
 from gymnasium.spaces import Dict
 
 from tailor.executive import domains
-from tailor.executive.composition import load_models
 from tailor.executive.core.execution import controller_arguments
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, Output, State, initial_state
@@ -24,6 +23,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.outlet import messages_of
 from tailor.executive.interfaces.reasons import Result
 from tailor.executive.interfaces.values import Array
+from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.world import World

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from tailor.executive.composition import required_ranges
+from tailor.executive.robot_models import check_fit
 from tailor.models.cards.card import card_path, read_bytes
-from tailor.models.cards.checks import check_place, check_ranges
+from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.export.zoo_writer import replace_model
@@ -157,11 +157,11 @@ def _errors_of(place: Place, temporary: Path) -> Iterator[None]:
 
 
 def _check(model: Path) -> None:
-    """Raise UsageError if a model is damaged, or another than its place says, or its robot needs a wider range."""
+    """Raise UsageError if a model is damaged, another than its place says, or none that its robot could use."""
     card, robot, action = load_model(model).card, model.parts[-3], model.parts[-2]
     check_place(card, f"{robot}/{action}/{model.stem}", model)
     if robot in robot_names():
-        check_ranges(card, required_ranges(robot).get(action, {}), model)
+        check_fit(robot, f"{action}/{model.stem}", card, model)
 
 
 def _install(source: Path, models: list[Path], zoo: Path, robot: str, replace: bool) -> None:

@@ -6,7 +6,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from tailor.executive.composition import build_context, check_models
+from tailor.executive.composition import build_context
+from tailor.executive.robot_models import check_models
 from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock

@@ -82,7 +82,7 @@ class EpisodeExtractor:
         if self._running is None or self._running.index != status.action_index:
             self._running = self._begin(status)
         elif self._subgoals is not None and self._subgoals.actions:
-            self._adopt(self._running, self._subgoals.actions[0])
+            self._adopt(self._running, self._subgoals.actions[0], status.action_elapsed_s)
         run = self._running
         if run is not None:
             if not run.ticks:
@@ -99,12 +99,18 @@ class EpisodeExtractor:
         instance, action = self._subgoals.actions[0], self._domain.actions[status.action]
         return _Running(status.action_index, instance, action, _goal(action, instance), self._is_in_context(action))
 
-    def _adopt(self, run: _Running, new: InstantiatedAction) -> None:
-        """Start the episode anew if the goal of the running action changed; its step may have another number now."""
+    def _adopt(self, run: _Running, new: InstantiatedAction, elapsed_s: float) -> None:
+        """Start the episode anew if the goal of the running action changed; its step may have another number now.
+
+        What has failed by then has failed on its way to the former goal.
+        """
         same = (new.action, new.asserted) == (run.instance.action, run.instance.asserted)
-        if same and not np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
-            run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
-            run.in_context = self._is_in_context(run.action)
+        if not same or np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
+            return
+        if run.failure:
+            self._add(run, elapsed_s, run.failure, done=False)
+        run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
+        run.in_context, run.start, run.failure = self._is_in_context(run.action), None, ""
 
     def _is_in_context(self, action: Action) -> bool:
         """Whether the newest decision knew objects near which the action may fail."""
@@ -137,15 +143,18 @@ class EpisodeExtractor:
 
     def _finish(self, finished: ActionFinished) -> None:
         run, self._running = self._running, None
-        if run is None or len(run.ticks) < MIN_TICKS or finished.outcome == "aborted":
+        if run is None or finished.outcome == "aborted":
             return
         done = finished.outcome == "done"
         failure = "" if done else reason_text(finished.reason, finished.detail)
         observed = bool(run.action.success_model or run.action.context) and run.start is not None
-        failure = run.failure or failure if observed else failure or UNOBSERVED
-        ticks = np.stack(run.ticks)
-        duration_s = finished.actual_s - run.begun_s
-        work_j = self._work(run.motions)
+        self._add(run, finished.actual_s, run.failure or failure if observed else failure or UNOBSERVED, done)
+
+    def _add(self, run: _Running, elapsed_s: float, failure: str, done: bool) -> None:
+        """Add the episode of a run, `elapsed_s` after its action's start; none if it was too short."""
+        if len(run.ticks) < MIN_TICKS:
+            return
+        ticks, duration_s, work_j = np.stack(run.ticks), elapsed_s - run.begun_s, self._work(run.motions)
         number, start, place = len(self.episodes), ticks[0], run.in_context
         episode = Episode(number, start, ticks, duration_s, not failure, failure, done, work_j, in_context=place)
         self.episodes.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))

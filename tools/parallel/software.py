@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import tailor
-from tailor.executive.composition import load_models
+from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.source import ROOT, runs_sha256

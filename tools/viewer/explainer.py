@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.composition import ModelLoader, load_models, rebuild_context
+from tailor.executive.composition import ModelLoader, rebuild_context
 from tailor.executive.deliberation.context import Context
+from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Contexts, Subgoals
 from tailor.schemas.parsed_files import table_of

@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from tailor.executive.composition import check_models
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.robot_models import check_models
 from tailor.schemas.errors import UsageError
 from tests.support.toy_domain import LineModel, line_context
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.composition import load_models
+from tailor.executive.robot_models import check_ranges, load_models
 from tailor.models import inference, runtime
 from tailor.models.cards.card import card_path, read_card, sha256_of, write_card
 from tailor.models.features.planar import projective
@@ -134,11 +134,12 @@ def test_a_card_of_another_model_is_refused(zoo: Path, key: str, value: str) -> 
 
 
 def test_ranges_that_the_model_has_not_seen_are_refused(zoo: Path) -> None:
-    runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.6)}})
+    card = read_card(card_path(duration(zoo)))
+    check_ranges(card, {"vg": (0.0, 0.6)}, zoo)
     with pytest.raises(UsageError, match=r"vg was trained in \[0, 0.6\] m/s, expected to cover \[0, 0.9\]"):
-        runtime.load_robot("agilo", zoo, {"goToPose": {"vg": (0.0, 0.9)}})
+        check_ranges(card, {"vg": (0.0, 0.9)}, zoo)
     with pytest.raises(UsageError, match="has no argument 'z'"):
-        runtime.load_robot("agilo", zoo, {"goToPose": {"z": (0.0, 0.9)}})
+        check_ranges(card, {"z": (0.0, 0.9)}, zoo)
 
 
 @pytest.mark.promise("P32")
@@ -235,7 +236,9 @@ def test_a_model_that_has_not_seen_what_its_action_asks_for_moves_no_robot(zoo: 
     assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
 
 
-def test_a_model_with_an_argument_that_its_action_has_no_more_is_refused_before_a_tick(zoo: Path, monkeypatch) -> None:
+def test_a_model_with_an_argument_that_its_action_has_no_more_is_refused_before_a_tick(
+    zoo: Path, monkeypatch, capsys
+) -> None:
     soccer = domains.load("soccer")
     action = soccer.actions["goToPose"]
     fewer = dataclasses.replace(action, parameters=action.parameters[:-1])
@@ -244,6 +247,8 @@ def test_a_model_with_an_argument_that_its_action_has_no_more_is_refused_before_
     taken = r"takes x y phi v xg yg phig vg, expected x y phi v xg yg phig by the action goToPose"
     with pytest.raises(UsageError, match=f"goToPose/duration: {taken}"):
         load_models("agilo", str(zoo))
+    assert main(["models", "check", "agilo/goToPose", "--zoo", str(zoo)]) == 1
+    assert "takes x y phi v xg yg phig vg, expected" in capsys.readouterr().out
 
 
 @pytest.mark.promise("P40")

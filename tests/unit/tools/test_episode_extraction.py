@@ -108,6 +108,18 @@ def test_a_changed_goal_begins_a_new_episode_and_a_next_action_s_goal_does_not()
     assert episode.arguments[4] == 2.5
 
 
+def test_what_failed_before_its_goal_changed_failed_with_the_former_goal() -> None:
+    first, late = drive("approachBall", 0, 10), drive("approachBall", 0, 10, first=10)
+    knocked = subgoals("approachBall", {"xg": 2.0}), *first[:5], truth(2.0), *first[5:], truth(2.5)
+    again = subgoals("approachBall", {"xg": 2.5}), *late[:5], truth(2.5), *late[5:]
+    messages = *knocked, *again, finished("approachBall", 0, 2.0)
+    [(_, failed), (_, fetched)] = cut(*messages)
+    assert (failed.finished, failed.success, failed.failure) == (False, False, "collision")
+    assert np.isclose(failed.duration_s, 1.0)
+    assert fetched.arguments[4] - failed.arguments[4] == 0.5
+    assert (fetched.finished, fetched.success, fetched.failure) == (True, True, "")
+
+
 def test_an_action_that_goes_on_in_a_new_plan_begins_a_new_episode() -> None:
     """The plan may number its step otherwise; the index of the action stays."""
     first, late = drive("goToPose", 0, 10), drive("goToPose", 0, 10, first=10)

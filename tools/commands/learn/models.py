@@ -10,16 +10,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from tailor.executive import domains
-from tailor.executive.composition import required_ranges
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 from tailor.models.cards.card_shape import TEST_FIGURES
-from tailor.models.cards.checks import check_place, check_ranges
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
-from tailor.models.runtime import BESIDE, ZOO, load_model
+from tailor.models.runtime import ZOO, load_model
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import models_folder, robot_names, spec_of_robot
+from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
@@ -84,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
     if arguments.verb == "check":
         return _check(names, arguments, named)
-    loaded = [_loaded(name, arguments.zoo) for name in names]
+    loaded = [load_model(name, arguments.zoo) for name in names]
     _check_data(arguments.data, {model.card["action"] for model in loaded})
     if arguments.verb == "list":
         _list([model.card for model in loaded], arguments.json)
@@ -100,13 +97,6 @@ def run(arguments: argparse.Namespace) -> int:
             drawn = map(str, pictures.draw(model, arguments.data, arguments.out or OUT))
             print("\n".join(drawn) or f"{name}: no picture without its episodes")
     return 0
-
-
-def _loaded(name: str, zoo: Path) -> OnnxModel:
-    """A model of the zoo; raises UsageError if it fails a check, as where it is another one than its place says."""
-    model = load_model(name, zoo)
-    check_place(model.card, name, zoo / name)
-    return model
 
 
 def _check_flags(arguments: argparse.Namespace) -> None:
@@ -206,45 +196,18 @@ def _show(cards: list[Card], as_json: bool) -> None:
 def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) -> int:
     """Check models of `arguments.zoo`, which the user `named` or not; exit code 0 if all are sound, else 1."""
     from tailor.tools.learning.remaking import remaking_advice
-    from tailor.tools.learning.staleness import staleness
+    from tailor.tools.learning.zoo_checks import checked
 
-    failed, stale = {}, {}
-    for name in [*names, *_missing(arguments.models, arguments.zoo)]:
-        try:
-            model, (robot, action, _) = _loaded(name, arguments.zoo), name.split("/")
-            check_ranges(model.card, required_ranges(robot).get(action, {}), arguments.zoo / name)
-            _check_beside(name, model.card, arguments.zoo)
-            differs = staleness(model.card)
-            if differs:
-                stale[name] = differs
-        except UsageError as error:
-            failed[name] = str(error)
+    failed: dict[str, str] = {}
+    stale: dict[str, str] = {}
+    for name, failure, differs in checked(names, arguments.models, arguments.zoo):
+        failed |= {name: failure} if failure else {}
+        stale |= {name: differs} if differs else {}
         if not arguments.json:
-            print(plain(f"{name}: {failed.get(name) or (f'stale: {stale[name]}' if name in stale else 'sound')}"))
+            print(plain(f"{name}: {failure or (f'stale: {differs}' if differs else 'sound')}"))
     if arguments.json:
         print(json.dumps({"checked": [*dict.fromkeys((*names, *failed))], "failed": failed, "stale": stale}))
     else:
         for robot in dict.fromkeys(name.split("/")[0] for name in stale):
             print(f"stale models of {robot} are made anew by {remaking_advice(robot, named)}")
     return 1 if failed or stale else 0
-
-
-def _missing(named: list[str], zoo: Path) -> list[str]:
-    """Models that an action of the named robots needs to start, of all whose folder this is if none is named."""
-    theirs = [robot for robot in robot_names() if models_folder(robot) == zoo or (zoo / robot).is_dir()]
-    missing = []
-    for robot in (robot for robot in theirs if robot in named or not named):
-        actions = domains.load(spec_of_robot(robot).name).actions.values()
-        needed = [path for action in actions for path in (action.duration_model, action.success_model) if path]
-        missing += [f"{robot}/{path}" for path in needed if not [*(zoo / robot).glob(f"{path}.*")]]
-    return [*dict.fromkeys(missing)]
-
-
-def _check_beside(name: str, card: Card, zoo: Path) -> None:
-    """Raise UsageError if durations beside objects are of other episodes than those without; nothing loads such."""
-    if not name.endswith(BESIDE):
-        return
-    own = _loaded(name.removesuffix(BESIDE), zoo).card
-    if own["episodes"].get("sha256") != card["episodes"].get("sha256"):
-        other = name.removesuffix(BESIDE)
-        raise UsageError(f"{zoo / name}.onnx: learned from other episodes than {other}, expected the same")

@@ -6,10 +6,11 @@ import argparse
 import time
 from dataclasses import replace
 
-from tailor.executive.composition import build_context, check_models, provenance
+from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.state import State
 from tailor.executive.deliberation.context import Context, check_goal
 from tailor.executive.interfaces.reasons import Reason
+from tailor.executive.robot_models import check_models
 from tailor.executive.shell import Shell
 from tailor.runtime import numpy_blocks, realtime
 from tailor.runtime.clock import MonotonicClock, wall_ns

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from tailor.executive import domains
-from tailor.executive.composition import load_models
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.robot_models import load_models
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import runs_sha256
