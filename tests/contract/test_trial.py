@@ -53,6 +53,16 @@ def test_a_body_that_cannot_be_made_or_is_another_robots_is_not_simulated(refusa
     assert error.count("\n") == 1
 
 
+@pytest.mark.parametrize(("old", "new"), [("class Body:", "class Chassis:"), ("def _drive(self)", "def _drive(self")])
+def test_nothing_of_a_robot_without_its_body_starts(old, new, tmp_path, capsys):
+    with known_robot("cart", "wheeled", tmp_path) as folder:
+        change(folder / "cart", "body.py", old, new)
+        assert main(["up", "cart", "--scenario", "stand"]) == 2
+    error = capsys.readouterr().err
+    assert "the package of cart does not hold together: body = 'cart.body:Body': " in error
+    assert error.count("\n") == 1
+
+
 @pytest.mark.parametrize("refusal", MISTAKES)
 def test_a_package_whose_code_raises_is_refused_in_one_line(refusal, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

@@ -69,6 +69,11 @@ class RunTimeline:
         self._outlines: dict[str, Outline] = {}  # by kind: the last ones
         self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
 
+    @property
+    def scene_fault(self) -> str:
+        """What the scene of the robot's package raised last; nothing is drawn then."""
+        return self._scenes.fault
+
     def events_of(self, at_s: float, key: str, message: m.Message) -> list[Event]:
         """Convert one message.
 

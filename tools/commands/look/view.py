@@ -98,10 +98,14 @@ def _titles(recordings: list[Path]) -> dict[str, Path]:
 def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
     console, explainer = Console(stderr=True), _explainer(arguments)
     with console.status(f"reading {recording}"):
-        events = recorded_events(recording, RunTimeline(explainer, arguments.robot), arguments.sender)
+        timeline = RunTimeline(explainer, arguments.robot)
+        events = recorded_events(recording, timeline, arguments.sender)
     for event in events[:1]:
         if event.kind == DAMAGE:
             console.print(event.fields["text"], highlight=False, markup=False, soft_wrap=True)
+    if timeline.scene_fault:
+        text = plain(f"the scene of {timeline.robot}: {timeline.scene_fault}")
+        console.print(text, highlight=False, markup=False, soft_wrap=True)
     if explainer is not None and explainer.missing:
         console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
     return events

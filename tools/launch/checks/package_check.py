@@ -21,6 +21,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.launch.checks.driver_check import faults_of_table, mismatches_of
 from tailor.tools.launch.checks.member_check import faults_of_controller, faults_of_members
+from tailor.tools.launch.checks.part_check import faults_of_parts
 from tailor.tools.launch.checks.scenario_check import faults_of_scenarios
 
 
@@ -39,6 +40,7 @@ def check_package(name: str) -> Domain:
 
 def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     """All faults of a package, each with file and field."""
+    yield from faults_of_parts(spec)
     where = spec.domain
     unlike = [f"{where}: {fault}" for fault in faults_of_members(domain)]
     if unlike:

@@ -1,6 +1,7 @@
 """A package whose parts do not hold together is refused at once, with all faults in one list."""
 
 import dataclasses
+import sys
 from types import SimpleNamespace
 
 import pytest
@@ -12,6 +13,7 @@ from tailor.schemas.installed import domain_names, spec_of
 from tailor.tools.commands.run import executive
 from tailor.tools.launch.checks import package_check, scenario_check
 from tailor.tools.launch.checks.package_check import check_package, faults_of_package
+from tailor.tools.launch.checks.part_check import LATER, faults_of_parts
 from tailor.tools.main import main
 
 NAN = float("nan")
@@ -20,6 +22,47 @@ NAN = float("nan")
 @pytest.mark.parametrize("name", domain_names())
 def test_every_installed_package_holds_together(name):
     assert check_package(name).name == name
+
+
+MODULE = """
+import os.path as places
+from math import *
+try:
+    import fast as body
+except ImportError:
+    body = None
+if places:
+    class Robot: ...
+first, (second, *others) = 1, (2, 3)
+"""
+PARTS = {
+    "scene = 'tailor_cart.scene': there is no module 'tailor_cart.scene'": {"scene": "tailor_cart.scene"},
+    "body = 'tailor_cart.bodies:Missing': module 'tailor_cart.bodies' has no 'Missing'": {
+        "body": "tailor_cart.bodies:Missing"
+    },
+    "draw = 'tailor_cart.broken:draw': '(' was never closed (broken.py, line 1)": {"draw": "tailor_cart.broken:draw"},
+    "": {"body": "simulators.of_others:Body", "sampler": "tailor_cart.bodies:second"},
+}
+
+
+@pytest.mark.parametrize("fault", PARTS)
+def test_a_part_that_is_not_where_the_spec_says_is_named_without_importing_it(fault, tmp_path, monkeypatch):
+    folder = tmp_path / "tailor_cart"
+    folder.mkdir()
+    for name, text in {"__init__": "", "bodies": MODULE.replace("from math import *", ""), "broken": "f(1"}.items():
+        (folder / f"{name}.py").write_text(text, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    spec = dataclasses.replace(spec_of("soccer"), **dict.fromkeys(LATER, ""), package="tailor_cart")
+    assert list(faults_of_parts(dataclasses.replace(spec, **PARTS[fault]))) == list(filter(None, [fault]))
+    assert "tailor_cart.bodies" not in sys.modules
+
+
+@pytest.mark.parametrize("name", ["places", "body", "Robot", "first", "second", "others", "sqrt"])
+def test_names_that_a_module_binds_somewhere_are_found(name, tmp_path, monkeypatch):
+    (tmp_path / "tailor_robot.py").write_text(MODULE, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    spec = dataclasses.replace(spec_of("soccer"), **dict.fromkeys(LATER, ""), package="tailor_robot")
+    assert not list(faults_of_parts(dataclasses.replace(spec, body=f"tailor_robot:{name}")))
 
 
 def changed(action="goToPose", parameter=None, **fields):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import os
 import re
@@ -18,7 +19,9 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of
 from tailor.tools.commands.look import compare, cut, picture, scene, view, why
+from tailor.tools.scenes import robot_scenes
 from tests.support import synthetic_run
 
 SENDERS = {"exec/": "ab" * 16}
@@ -106,6 +109,18 @@ def test_runs_side_by_side_are_named_without_their_folder(recording, tmp_path) -
     twin.write_bytes(recording.read_bytes())
     assert run(view, recording, twin, "-o", output, "--no-models") == 0
     assert [each["title"] for each in data_in(output)["pages"]] == [str(recording), str(twin)]
+
+
+def test_a_scene_that_cannot_be_drawn_is_reported(recording, tmp_path, capsys, monkeypatch) -> None:
+    def missing(spec, field):
+        raise UsageError(f"domain {spec.name}: {field} = 'x.missing': No module named 'x'")
+
+    monkeypatch.setattr(robot_scenes, "part", missing)
+    spec = dataclasses.replace(spec_of("soccer"), scene="x.missing")
+    monkeypatch.setattr(robot_scenes, "spec_of", lambda _: spec)
+    assert run(view, recording, "-o", tmp_path / "run.html", "--no-models") == 0
+    expected = "the scene of agilo: domain soccer: scene = 'x.missing': No module named 'x'\n"
+    assert capsys.readouterr().err == expected
 
 
 def test_view_puts_the_page_beside_the_recording_by_default(recording, capsys) -> None:
