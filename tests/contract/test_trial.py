@@ -14,6 +14,16 @@ MISTAKES = {
         "pose.phi, max(0.0, belief.v),",
         "pose.phi,",
     ),
+    "sample of drive has x = nan, expected a number": (
+        "sampler.py",
+        "return arguments\n",
+        "return arguments * math.nan\n",
+    ),
+    "arguments_now of drive has v = nan, expected a number": (
+        "sampler.py",
+        "max(0.0, belief.v), *",
+        "belief.v * math.nan, *",
+    ),
     "ValueError: timestep is 0.05 s, expected a part of 0.01 s (body.py, line ": (
         "scene.xml",
         'timestep="0.005"',

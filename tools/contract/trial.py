@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import part, spec_of
 from tailor.schemas.installed.package_errors import blamed_on_package
@@ -38,6 +40,16 @@ def _try_action(body: Body, domain: Domain, action: str) -> None:
     where = f"sampler of {domain.name}"
     if np.shape(arguments) != (expected,):
         raise UsageError(f"{where}: sample of {action} has the shape {np.shape(arguments)}, expected ({expected},)")
+    _check_finite(f"{where}: sample of {action}", domain, action, arguments)
     ticks = run_action(body, domain, action, arguments, rng, limit_s=TRIAL_S).ticks
     if ticks.shape[1:] != (expected,):
         raise UsageError(f"{where}: arguments_now of {action} has the shape {ticks.shape[1:]}, expected ({expected},)")
+    for tick in ticks:
+        _check_finite(f"{where}: arguments_now of {action}", domain, action, tick)
+
+
+def _check_finite(where: str, domain: Domain, action: str, arguments: Array) -> None:
+    """Raise UsageError, naming the first parameter that is no number, as where a reading of the body is none."""
+    for parameter, value in zip(domain.actions[action].parameters, arguments.tolist(), strict=True):
+        if not math.isfinite(value):
+            raise UsageError(f"{where} has {parameter.name} = {value}, expected a number")
