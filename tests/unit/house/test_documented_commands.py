@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from tailor.tools.cli.systems.deployment import Deployment
-from tailor.tools.commands.measure.evaluate import EVALUATIONS, RESUME
+from tailor.tools.commands.measure.evaluate import RESUME
+from tailor.tools.evaluations.catalogue import EVALUATIONS
 from tailor.tools.main import COMMANDS
 from tests.unit.house.arrows import ROOT
 

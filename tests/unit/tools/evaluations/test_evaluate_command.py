@@ -12,6 +12,7 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
+from tailor.tools.evaluations import catalogue
 from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.seeds import Seeds
@@ -56,7 +57,8 @@ def three(monkeypatch):
     made = {"first": (("soccer",), lambda: 0), "second": (("arm",), lambda: 1), "third": (("soccer",), refuse)}
     for name, (domains, run) in made.items():
         monkeypatch.setitem(sys.modules, f"stand_in.{name}", module(name, domains, run))
-    monkeypatch.setattr(evaluate, "EVALUATIONS", {name: (f"stand_in.{name}", "told") for name in made})
+    for place in (catalogue, evaluate):
+        monkeypatch.setattr(place, "EVALUATIONS", {name: (f"stand_in.{name}", "told") for name in made})
 
 
 def test_the_worst_exit_code_is_that_of_all(capsys):

@@ -12,7 +12,7 @@ import pytest
 from tailor.executive.interfaces.domain import LabelQuery
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.errors import UsageError
-from tailor.tools.commands.measure import evaluate
+from tailor.tools.evaluations import catalogue
 from tailor.tools.evaluations.assertion import figure15, figure16
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.journal import Journal
@@ -177,9 +177,9 @@ def test_every_evaluation_has_the_same_flags(module):
     assert (given.episodes, given.jobs, given.json) == (3, 1, True)
 
 
-@pytest.mark.parametrize("name", evaluate.EVALUATIONS)
+@pytest.mark.parametrize("name", catalogue.EVALUATIONS)
 def test_every_evaluation_can_be_one_of_the_lot(name):
-    module, given, unknown = evaluate._parsed(name, ["--jobs", "1", "--report", "out", "--json", "--domain", "soccer"])
+    module, given, unknown = catalogue._parsed(name, ["--jobs", "1", "--report", "out", "--json", "--domain", "soccer"])
     assert (given.jobs, given.json, str(given.report), unknown) == (1, True, "out", [])
     assert callable(module.run)
 
