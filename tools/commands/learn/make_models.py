@@ -26,7 +26,8 @@ examples:
   tailor make-models agilo --recipe my.toml --zoo out/zoo
 
 A recipe is a file recipe.toml beside the models: seed, random episodes of each action, rounds that the models choose.
-Equal source and libraries give equal models, bit for bit. Run an interrupted command again to resume it."""
+Equal source and libraries give equal models on CPUs of one kind, bit for bit. An interrupted command resumes when it is
+run again."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
