@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
@@ -19,10 +15,11 @@ from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.gathering.progress import gathered, note, shown
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
-from tailor.tools.parallel.steps import Step, counted, show
+from tailor.tools.parallel.steps import counted
 
 EPILOG = """\
 examples:
@@ -157,12 +154,12 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
     figures = []
     for spec in specs:
         try:
-            figures.append(_gather(spec, arguments.jobs, quiet=arguments.json))
+            figures.append(gathered(spec, arguments.jobs, quiet=arguments.json))
         except KeyboardInterrupt:
             left = sum(
                 min(random_episodes.PART, spec.episodes - first) for first in random_episodes.missing_parts(spec)
             )
-            _note(f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues")
+            note(f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues")
             return 130
     if arguments.json:
         print(json.dumps(figures))
@@ -178,7 +175,7 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     if arguments.recordings:
         extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
         for line in extracted.left_out:
-            _note(line)
+            note(line)
         found = ", ".join(f"{action} {count}" for action, count in extracted.counts.items())
         print(json.dumps(extracted.counts) if arguments.json else f"{out}: episodes: {found}")
         return 0
@@ -190,32 +187,11 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
         from tailor.tools.learning.gathering.active_episodes import Active, run_active
 
         active = Active(domain, scenarios, arguments.episodes, arguments.pool or POOL, *where)
-        return _shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
+        return shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
     policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where, arguments.calibrates)
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
     steps = counted("runs", running, len(policy.jobs), policy_runs.finished_runs(policy))
-    return _shown(steps, out, arguments.json)
-
-
-def _shown(steps: Iterable[Step], out: Path, as_json: bool) -> int:
-    """Show the progress of all steps; exit code 0, or 130 if interrupted."""
-    reached: dict[str, tuple[Step, Step]] = {}  # first and newest by title
-    try:
-        show(steps, quiet=as_json, reached=reached)
-    except KeyboardInterrupt:
-        kept = ", ".join(f"{newest.done} of {newest.total} {title}" for title, (_, newest) in reached.items())
-        _note(f"{out}: kept {kept}; --resume continues")
-        return 130
-    if as_json:
-        totals = {title: newest.total for title, (_, newest) in reached.items()}
-        now = sum(newest.done - first.done for first, newest in reached.values())
-        print(json.dumps({"folder": str(out), **totals, "run_now": now}))
-    return 0
-
-
-def _note(line: str) -> None:
-    """Print to standard error, in one line: brackets in a path are no markup."""
-    Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
+    return shown(steps, out, arguments.json)
 
 
 def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[str]:
@@ -231,24 +207,3 @@ def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[
     if not modelled:
         raise UsageError(f"no action of {domain} has a context of objects, expected one to gather beside them")
     return list(dict.fromkeys(requested)) or sorted(modelled)
-
-
-def _gather(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
-    parts, started = random_episodes.missing_parts(spec), time.perf_counter()
-    left = sum(min(random_episodes.PART, spec.episodes - first) for first in parts)
-    simulated = busy = 0.0
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
-        task = progress.add_task(spec.action, total=spec.episodes, completed=spec.episodes - left, rate="")
-        for count, sim_s, wall_s in random_episodes.gather(spec, parts, jobs):
-            simulated, busy = simulated + sim_s, busy + wall_s
-            speed = simulated / busy if busy else 0.0
-            progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")
-    return {
-        "action": spec.action,
-        "folder": str(spec.folder),
-        "episodes": left,
-        "simulated_s": simulated,
-        "wall_s": time.perf_counter() - started,
-        "times_real_per_core": simulated / busy if busy else None,
-    }
