@@ -75,11 +75,3 @@ def test_an_opponent_can_be_put_elsewhere_while_the_clock_runs():
     (truth,) = messages(body.advance(TICK_NS), OpponentsTruth)
     assert [(o.x, o.y) for o in truth.opponents] == [(1.5, 1.5), (-1.0, 0.0)]
     assert truth.opponents[0].radius_m == 0.15
-
-
-@pytest.mark.parametrize("radius_m", [0.0, -1.0, 2.5])
-def test_an_opponent_without_a_body_is_refused(radius_m):
-    assert (
-        AgiloBody().refusal({"opponent2_radius": radius_m}).startswith(f"opponent2_radius is {radius_m:g} m, expected")
-    )
-    assert AgiloBody().refusal({"opponent2_radius": 0.2, "x": 1.0}) == ""

@@ -8,7 +8,7 @@ import pytest
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
-from tailor.tools.learning import remaking, staleness
+from tailor.tools.learning import remaking, zoo_checks
 from tailor.tools.learning.remaking import remaking_advice
 from tailor.tools.main import main
 
@@ -47,7 +47,7 @@ def test_an_installed_package_is_not_written_into(monkeypatch) -> None:
 
 
 def test_the_command_advises_once_for_each_robot(monkeypatch, capsys) -> None:
-    monkeypatch.setattr(staleness, "staleness", lambda card: f"{card['action']} is")
+    monkeypatch.setattr(zoo_checks, "staleness", lambda card: f"{card['action']} is")
     assert main(["models", "check", "powercube/reach", "powercube/reach/energy", "--zoo", str(ZOO)]) == 1
     *_, advice = lines = capsys.readouterr().out.splitlines()
     assert advice == f"stale models of powercube are made anew by `tailor make-models powercube --zoo {ZOO}`"

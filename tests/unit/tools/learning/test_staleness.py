@@ -13,7 +13,7 @@ from tailor.schemas.installed.changed_source import changed_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.launch import stale_models
 from tailor.tools.launch.stale_models import stale_models_warning
-from tailor.tools.learning import staleness
+from tailor.tools.learning import staleness, zoo_checks
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.staleness import differing_episodes
@@ -121,7 +121,7 @@ def test_a_launch_warns_in_one_line(card, altered, tmp_path: Path, monkeypatch) 
 
 
 def test_the_command_reports_stale_models(tmp_path: Path, monkeypatch, capsys) -> None:
-    monkeypatch.setattr(staleness, "staleness", lambda card: f"{card['action']} is")
+    monkeypatch.setattr(zoo_checks, "staleness", lambda card: f"{card['action']} is")
     assert main(["models", "check", "powercube/reach", "--json"]) == 1
     message = json.loads(capsys.readouterr().out)
     assert (message["failed"], message["stale"]) == ({}, {"powercube/reach/duration": "reach is"})
