@@ -156,10 +156,8 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
         try:
             figures.append(gathered(spec, arguments.jobs, quiet=arguments.json))
         except KeyboardInterrupt:
-            left = sum(
-                min(random_episodes.PART, spec.episodes - first) for first in random_episodes.missing_parts(spec)
-            )
-            note(f"{spec.folder}: kept {spec.episodes - left} of {spec.episodes}; --resume continues")
+            kept = spec.episodes - random_episodes.missing_episodes(spec)
+            note(f"{spec.folder}: kept {kept} of {spec.episodes}; --resume continues")
             return 130
     if arguments.json:
         print(json.dumps(figures))

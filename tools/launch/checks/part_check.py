@@ -6,7 +6,7 @@ A launcher has no use for physics, and a process that cannot import its part wou
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -37,28 +37,20 @@ def _fault(module: str, attribute: str) -> str:
     if not attribute or found.origin is None or not found.origin.endswith(".py"):
         return ""
     try:
-        names = set(_names(ast.parse(Path(found.origin).read_bytes()).body))
+        names = set(_names(ast.parse(Path(found.origin).read_bytes())))
     except SyntaxError as error:
         return f"{error.msg} ({Path(found.origin).name}, line {error.lineno})"
     return "" if names & {attribute, "*", "__getattr__"} else f"module '{module}' has no '{attribute}'"
 
 
-def _names(statements: Iterable[ast.stmt]) -> Iterator[str]:
-    """Names that a module's own statements bind, also under conditions; "*" for all of another module."""
-    for each in statements:
+def _names(parent: ast.AST) -> Iterator[str]:
+    """Names that a module's own statements bind or use, also under conditions; "*" for all of another module."""
+    for each in ast.iter_child_nodes(parent):
         if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             yield each.name
         elif isinstance(each, ast.Import | ast.ImportFrom):
             yield from (alias.asname or alias.name.partition(".")[0] for alias in each.names)
+        elif isinstance(each, ast.Name):
+            yield each.id
         else:
-            yield from (node.id for node in ast.walk(each) if isinstance(node, ast.Name))
-            for block in ("body", "orelse", "finalbody", "handlers"):
-                yield from _names(_statements(getattr(each, block, [])))
-
-
-def _statements(block: list[ast.stmt] | list[ast.ExceptHandler]) -> Iterator[ast.stmt]:
-    for each in block:
-        if isinstance(each, ast.ExceptHandler):
-            yield from each.body
-        else:
-            yield each
+            yield from _names(each)

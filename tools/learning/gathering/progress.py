@@ -17,13 +17,12 @@ from tailor.tools.parallel.steps import Step, show
 
 def gathered(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
     """Gather the missing episodes of a data set, with progress unless `quiet`; returns its figures."""
-    parts, started = random_episodes.missing_parts(spec), time.perf_counter()
-    left = sum(min(random_episodes.PART, spec.episodes - first) for first in parts)
+    left, started = random_episodes.missing_episodes(spec), time.perf_counter()
     simulated = busy = 0.0
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
     with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
         task = progress.add_task(spec.action, total=spec.episodes, completed=spec.episodes - left, rate="")
-        for count, sim_s, wall_s in random_episodes.gather(spec, parts, jobs):
+        for count, sim_s, wall_s in random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs):
             simulated, busy = simulated + sim_s, busy + wall_s
             speed = simulated / busy if busy else 0.0
             progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")

@@ -106,6 +106,11 @@ def missing_parts(spec: DataSetSpec) -> list[int]:
     return [first for first in range(0, spec.episodes, PART) if not part_path(spec, first).exists()]
 
 
+def missing_episodes(spec: DataSetSpec) -> int:
+    """Number of the episodes in the parts that are missing."""
+    return sum(min(PART, spec.episodes - first) for first in missing_parts(spec))
+
+
 def prepare(spec: DataSetSpec, resume: bool) -> None:
     """See `prepare_all`."""
     prepare_all([spec], resume)
