@@ -144,6 +144,8 @@ class DribbleBall:
 
     def _creeping(self, ball: BallTrack, omega: float) -> float:
         """How far the ball has crept to the outside of the turn: 0 at the bottom of the rail, 1 where it slips out."""
+        if omega == 0.0:
+            return 0.0  # straight on, no side is the outside
         outside = math.copysign(ball.left, -omega * ball.left) - self.seated_again_m
         return max(0.0, min(1.0, outside / (self.slip_aside_m - self.seated_again_m)))
 

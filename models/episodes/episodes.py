@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tailor.models.episodes.manifest import read_manifest
 from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
-from tailor.models.episodes.sources import CALIBRATES, PROBE, end_of, probe_of, source_files, source_of
+from tailor.models.episodes.sources import CALIBRATES, PROBE, SELECTED, end_of, probe_of, source_files, source_of
 from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
 
@@ -50,6 +50,7 @@ class Episode:
       on_policy: Whether an optimiser chose the arguments.
       calibrates: Whether models of duration and energy do not learn from it, which chose it: it corrects intervals.
       in_context: Whether it was decided beside objects of its `ActionContext`, of which the arguments know nothing.
+      selected: Whether it was selected for what a model did not know: it is learned from, but judges no intervals.
     """
 
     number: int
@@ -63,6 +64,7 @@ class Episode:
     on_policy: bool = False
     in_context: bool = False
     calibrates: bool = False
+    selected: bool = False
 
 
 def write_part(path: Path, episodes: Iterable[Episode], names: Sequence[str]) -> None:
@@ -212,6 +214,7 @@ def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
 
 def _episodes(table: pa.Table, names: Sequence[str], manifest: Mapping[str, Any]) -> list[Episode]:
     on_policy, calibrates = bool(manifest.get("on_policy")), bool(manifest.get(CALIBRATES))
+    selected = any(manifest.get(key) for key in SELECTED)
     column = {name: table[name].to_numpy() for name in table.column_names if name != "failure"}
     failure = table["failure"].to_pylist()
     ticks = np.column_stack([column[name] for name in names])
@@ -233,6 +236,7 @@ def _episodes(table: pa.Table, names: Sequence[str], manifest: Mapping[str, Any]
             on_policy,
             bool(in_context[a]),
             calibrates,
+            selected,
         )
         for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)
     ]

@@ -50,6 +50,7 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "objects": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
     "scenarios": (_are_names, "a list of names"),
     "situations": (is_count, "a whole number"),
+    "candidates": (is_count, "a whole number"),
     "profile": (lambda value: isinstance(value, str), "text"),
     "recordings": (_are_names, "a list of names"),
     "context": (_is_context, "names of columns, and a failure"),

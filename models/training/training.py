@@ -95,11 +95,9 @@ def train_regression(
     check_count(finished, "finished")
     choices = _choices(target, [episode for episode in usable if episode.calibrates and judges(episode)])
     rng = np.random.default_rng(seed)
-    judging = [episode for episode in finished if judges(episode)]
-    kinds = {
-        episode.number: (FORMER if episode.on_policy else RANDOM) if judges(episode) else NOT_JUDGED
-        for episode in finished
-    }
+    judging = _judging(finished, judges)
+    kinds = dict.fromkeys((episode.number for episode in finished), NOT_JUDGED)
+    kinds |= {episode.number: FORMER if episode.on_policy else RANDOM for episode in judging}
     numbers = np.array([episode.number for episode in finished])
     kept, apart = split(numbers, TEST_SHARE, rng)
     singles = learners.single_learners(learners.learner_name(target.kind, learner), seed)
@@ -117,6 +115,12 @@ def train_regression(
         **({"cv_mae": held_out.inner_.cv_mae_} if hasattr(held_out.inner_, "cv_mae_") else {}),
     }
     return Trained(fitted(CalibratedRegressor(chosen, seed), rows, space, kinds, choices), n_i, test)
+
+
+def _judging(finished: Sequence[Episode], judges: Callable[[Episode], bool]) -> list[Episode]:
+    """Episodes that judge intervals and test: none selected for what a model did not know, unless all are."""
+    judging = [episode for episode in finished if judges(episode)]
+    return [episode for episode in judging if not episode.selected] or judging
 
 
 def _choices(target: RegressionTarget, episodes: Sequence[Episode]) -> Examples | None:

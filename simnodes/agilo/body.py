@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from tailor.schemas.messages.soccer import BallTruth, SoccerGroundTruth
-from tailor.simnodes.agilo import ball
+from tailor.simnodes.agilo import ball, opponents
 from tailor.simnodes.agilo import firmware as fw
 from tailor.simnodes.agilo.opponents import NAMES, Opponents
 from tailor.simnodes.agilo.physical_parameters import PhysicalParameters
@@ -79,6 +79,10 @@ class AgiloBody:
             each.place(values)
         self._opponents.place(values)
         mujoco.mj_forward(self._model, self._data)
+
+    def refusal(self, values: Mapping[str, float]) -> str:
+        """See Body: opponents are solid."""
+        return opponents.refusal(values)
 
     def command(self, values: tuple[float, ...]) -> None:
         """Set-point (v m/s, omega rad/s)."""

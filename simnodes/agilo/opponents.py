@@ -12,11 +12,19 @@ import mujoco
 from tailor.schemas.messages.soccer import Opponent, OpponentsTruth
 
 COUNT = 4
-RADIUS_M = 0.2
+RADIUS_M, MAX_RADIUS_M = 0.2, 2.0
 QUANTITIES = ("x", "y", "radius")
 BODIES = tuple(f"opponent{number}" for number in range(1, COUNT + 1))
 NAMES = tuple(f"{body}_{quantity}" for body in BODIES for quantity in QUANTITIES)
 SOLID = 4  # collision bits of scene.xml: chassis, rail and ball meet these
+
+
+def refusal(values: Mapping[str, float]) -> str:
+    """What is wrong with radii among start values; empty if nothing is."""
+    for name in (f"{body}_radius" for body in BODIES):
+        if not 0.0 < values.get(name, RADIUS_M) <= MAX_RADIUS_M:
+            return f"{name} is {values[name]:g} m, expected above 0 and at most {MAX_RADIUS_M:g}"
+    return ""
 
 
 class Opponents:

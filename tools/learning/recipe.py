@@ -14,6 +14,7 @@ from tailor.schemas.settings import from_table
 from tailor.tools.learning.gathering.situations import MAX_SITUATIONS, too_many
 
 RECIPE = "recipe.toml"
+UNCERTAIN_POOL = 30  # tasks drawn for each episode of uncertain success
 MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
 
 
@@ -66,6 +67,21 @@ class RandomEpisodes:
 
 
 @dataclass(frozen=True, slots=True)
+class UncertainEpisodes:
+    """Random episodes whose success the models of the random ones are least certain of.
+
+    Attributes:
+      action: An action with a model of success.
+      episodes: Their number.
+      pool: Tasks that are drawn for each of them.
+    """
+
+    action: str
+    episodes: int
+    pool: int = UNCERTAIN_POOL
+
+
+@dataclass(frozen=True, slots=True)
 class OwnLearner:
     """Learner of the durations and energies of an action that needs another one than most."""
 
@@ -97,6 +113,7 @@ class Recipe:
       beside: Random runs beside objects, of each action that has a model of success beside an object.
       objects: Objects noted after each of these runs, an episode each (see `beside_objects.py`); 0: one that is
         there while it runs.
+      uncertain: Episodes that follow, of actions that seldom fail.
       seed: Of all random draws of gathering.
       rounds: Rounds that follow, each with the models trained on all episodes before it.
       calibration: Runs after all rounds.
@@ -109,6 +126,7 @@ class Recipe:
     objects: int = 0
     seed: int = 7
     random: tuple[RandomEpisodes, ...] = ()
+    uncertain: tuple[UncertainEpisodes, ...] = ()
     rounds: tuple[Round, ...] = ()
     calibration: tuple[Calibration, ...] = ()
     training: Training = field(default_factory=Training)
@@ -160,6 +178,7 @@ def _faults(recipe: Recipe) -> Iterator[str]:
     if recipe.objects > 0 and not recipe.beside:
         yield f"objects is {recipe.objects}, expected none without `beside`, the number of runs beside them"
     yield from _repeated("random", [each.action for each in recipe.random])
+    yield from _repeated("uncertain", [each.action for each in recipe.uncertain])
     yield from _repeated("training.learners", [each.action for each in recipe.training.learners])
     for name, chosen in recipe.chosen:
         if not chosen.scenarios:
@@ -180,6 +199,8 @@ def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:
     yield from (("episodes", recipe.episodes, 1), ("beside", recipe.beside, 0), ("objects", recipe.objects, 0))
     yield from (("random.episodes", each.episodes, 1) for each in recipe.random)
     yield from ((f"{name}.episodes", chosen.episodes, 1) for name, chosen in recipe.chosen)
+    for each in recipe.uncertain:
+        yield from (("uncertain.episodes", each.episodes, 1), ("uncertain.pool", each.pool, 1))
     yield from (("rounds.pool", each.pool, 1) for each in recipe.rounds)
 
 

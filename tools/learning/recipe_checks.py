@@ -8,6 +8,7 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import random_episodes, run_data_sets
 from tailor.tools.learning.gathering.beside_objects import check_sampler
+from tailor.tools.learning.gathering.uncertain_episodes import check_candidates, success_model
 from tailor.tools.learning.recipe import Recipe
 from tailor.tools.lockstep.bodies import check_profile
 
@@ -33,11 +34,16 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     for count in (recipe.episodes, *(each.episodes for each in recipe.random)):
         random_episodes.check_number(count)
     random_episodes.check_number(recipe.beside, recipe.objects)
+    for each in recipe.uncertain:
+        check_candidates(each.pool, each.episodes)
     named = [("random episodes", each.action) for each in recipe.random]
+    named += [("uncertain episodes", each.action) for each in recipe.uncertain]
     named += [("a learner", each.action) for each in recipe.training.learners]
     for what, action in named:
         if action not in actions:
             raise UsageError(f"{what} of '{action}', expected one of: {', '.join(actions)}")
+    for each in recipe.uncertain:
+        success_model(domain, each.action)
     for scenario in dict.fromkeys(name for _, each in recipe.chosen for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.episodes.sources import CANDIDATES
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -176,12 +177,19 @@ def _gather_command(robot: str, manifest: Mapping[str, Any]) -> str:
 
 def _drawn(manifest: Mapping[str, Any]) -> str:
     """The flags that name what the episodes of a data set were drawn from."""
-    scenarios, situations = " ".join(manifest.get("scenarios") or ()), manifest.get("situations")
-    if situations:
-        return f"--active {scenarios} --pool {situations // max(1, manifest.get('episodes') or 1)}"
+    scenarios = " ".join(manifest.get("scenarios") or ())
+    if manifest.get(CANDIDATES):
+        return f"{manifest['action']} --uncertain --pool {_pool(manifest, CANDIDATES)}"
+    if manifest.get("situations"):
+        return f"--active {scenarios} --pool {_pool(manifest, 'situations')}"
     if scenarios:
         return f"--on-policy {scenarios}" + (" --calibrates" if manifest.get("calibrates") else "")
     action: str = manifest["action"]
     if manifest.get("objects"):
         return f"{action} --beside-objects {manifest['objects']}"
     return f"{action} --beside-object" if (manifest.get("context") or {}).get("names") else action
+
+
+def _pool(manifest: Mapping[str, Any], drawn: str) -> int:
+    """Tasks or situations that were drawn for each episode."""
+    return int(manifest[drawn] // max(1, manifest.get("episodes") or 1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.progress import gathered, note, shown
+from tailor.tools.learning.recipe import UNCERTAIN_POOL
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import configure_cluster, working_on
 from tailor.tools.parallel.software import Work
@@ -30,6 +32,7 @@ examples:
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
   tailor gather agilo --on-policy approach-dribble --episodes 300 --seed 9 --calibrates --out data/agilo-intervals
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
+  tailor gather agilo approachBall --uncertain --episodes 300 --out data/agilo-uncertain
   tailor gather agilo --episodes 30000 --on tcp://lab-7:8786 --out data/agilo   (on a cluster: docs/cluster.md)
   tailor gather agilo --profile degraded --out data/agilo-degraded   (a worse camera, other tyres)
   tailor gather agilo --from monday.mcap tuesday.mcap --out data/agilo-real
@@ -37,6 +40,7 @@ examples:
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
 seed gives the same bits for any number of jobs, here and on a cluster."""
 POOL = 4  # situations per episode of --active
+CHOOSING = "--on-policy, --active or --uncertain"
 SIMULATED = {"episodes": 1000, "jobs": 2, "seed": 7, "profile": "", "resume": False, "on": None}  # not of recordings
 
 
@@ -58,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--pool",
         type=at_least(1, "--pool"),
-        help=f"--active: situations per episode (default: {POOL})",
+        help=f"--active: situations per episode (default: {POOL}); --uncertain: tasks (default: {UNCERTAIN_POOL})",
     )
     parser.add_argument(
         "--calibrates",
@@ -67,7 +71,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "from them",
     )
     parser.add_argument("--profile", help="profile of the body, e.g. degraded (default: the one that ships)")
-    parser.add_argument("--zoo", default="", help="models for --on-policy, --active (default: the ones that ship)")
+    parser.add_argument("--zoo", default="", help=f"models for {CHOOSING} (default: the ones that ship)")
     parser.add_argument("--resume", action="store_true", help="continue an interrupted command")
     parser.add_argument("--json", action="store_true", help="print results as JSON, without progress bar")
     parser.set_defaults(**SIMULATED)
@@ -84,6 +88,11 @@ def _configure_sources(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         metavar="SCENARIO",
         help="run the refined choices on which the current models disagree most",
+    )
+    other.add_argument(
+        "--uncertain",
+        action="store_true",
+        help="run the random tasks whose success the current models are least certain of: where failures are rare",
     )
     other.add_argument(
         "--from", nargs="+", type=Path, metavar="RECORDING", dest="recordings", help="extract recorded runs instead"
@@ -109,10 +118,12 @@ def run(arguments: argparse.Namespace) -> int:
     check_package(name)
     check_profile(name, arguments.profile)
     out = arguments.out or Path("data") / arguments.robot
-    chosen = arguments.on_policy or arguments.active
+    chosen = arguments.on_policy or arguments.active or arguments.uncertain
     if arguments.on and arguments.zoo:
         arguments.zoo = str(Path(arguments.zoo).resolve())  # workers have another working directory
     with working_on(arguments.on, Work((name,), arguments.zoo if chosen else None)):
+        if arguments.uncertain:
+            return _uncertain(arguments, name, out)
         if chosen or arguments.recordings:
             return _from_runs(arguments, name, out)
         return _random(arguments, name, out)
@@ -120,10 +131,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _refuse_ignored(arguments: argparse.Namespace) -> None:
     """Raise UsageError for flags that are without effect beside the others."""
-    if arguments.pool is not None and not arguments.active:
-        raise UsageError("--pool counts the situations of --active, expected none without it")
-    if arguments.zoo and not (arguments.active or arguments.on_policy):
-        raise UsageError("--zoo names the models that choose, expected none without --on-policy or --active")
+    if arguments.pool is not None and not (arguments.active or arguments.uncertain):
+        raise UsageError("--pool counts the situations of --active and tasks of --uncertain, expected none without")
+    if arguments.zoo and not (arguments.active or arguments.on_policy or arguments.uncertain):
+        raise UsageError(f"--zoo names the models that choose, expected none without {CHOOSING}")
     if arguments.calibrates and not arguments.on_policy:
         raise UsageError("--calibrates is for choices of finished models, expected none without --on-policy")
     for name, default in SIMULATED.items() if arguments.recordings else ():
@@ -162,6 +173,19 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
     if arguments.json:
         print(json.dumps(figures))
     return 0
+
+
+def _uncertain(arguments: argparse.Namespace, name: str, out: Path) -> int:
+    """Gather random episodes whose success is uncertain."""
+    from tailor.tools.learning.gathering.uncertain_episodes import Uncertain, judged_actions, run_uncertain
+
+    for action in arguments.actions:
+        random_episodes.check_action(name, action)
+    actions = arguments.actions or judged_actions(name)
+    number = (arguments.episodes, arguments.pool or UNCERTAIN_POOL, arguments.seed, arguments.zoo)
+    sets = [Uncertain(name, action, *number, out / action, arguments.profile) for action in dict.fromkeys(actions)]
+    ready = [run_uncertain(each, arguments.jobs, arguments.resume) for each in sets]
+    return shown(chain.from_iterable(ready), out, arguments.json)
 
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:

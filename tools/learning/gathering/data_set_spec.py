@@ -13,6 +13,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.tools.lockstep import action_run
 
 TRAINING_STREAM, EVALUATION_STREAM, NOISE_STREAM, POLICY_STREAM = 10, 11, 12, 13  # first word of every seed
+UNCERTAIN_STREAM = 15  # active_episodes.py has 14
 
 
 @dataclass(frozen=True, slots=True)

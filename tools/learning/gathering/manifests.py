@@ -15,7 +15,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.episodes import BESIDE_ONE
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
-from tailor.models.episodes.sources import short_hashes
+from tailor.models.episodes.sources import SELECTED, short_hashes
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
@@ -108,7 +108,7 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
             f"{folder}: holds episodes already (expected another --out, or --resume to continue simulated runs)"
         )
     existing = read_manifest(folder)
-    selected = "situations" in manifest  # episodes of the largest disagreement among a fixed number of situations
+    selected = any(key in manifest for key in SELECTED)  # among a fixed number, which does not grow
     for key, value in manifest.items():
         if (key not in COUNTS or (selected and key == "episodes")) and existing.get(key) != value:
             raise UsageError(f"{folder}: was gathered with {key} = {existing.get(key)!r}, expected {value!r} to resume")

@@ -1,4 +1,4 @@
-"""Gathers the episodes of a recipe: random ones, then rounds and calibration, which models choose."""
+"""Gathers the episodes of a recipe: random ones, those of uncertain success, then rounds and calibration."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from tailor.tools.learning.gathering import policy_runs, random_episodes, run_data_sets
 from tailor.tools.learning.gathering.active_episodes import Active, run_active
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.gathering.uncertain_episodes import Uncertain, run_uncertain
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.recipe import MAX_SEED, Round
 from tailor.tools.learning.recipe_checks import learned_beside
@@ -31,10 +32,17 @@ def gather_random(making: Making) -> Iterator[Step]:
         yield from counted(title, running, count, count - left)
 
 
+def gather_uncertain(making: Making, zoo: Path) -> Iterator[Step]:
+    """Gather the random episodes of whose success the models in a zoo are least certain; yields progress."""
+    for each in making.recipe.uncertain:
+        where = (making.recipe.seed, str(zoo), making.uncertain / each.action, making.recipe.profile)
+        yield from run_uncertain(Uncertain(making.domain, each.action, each.episodes, each.pool, *where), making.jobs)
+
+
 def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
     """Gather round `number`, from 0, of episodes that the models in a zoo choose; yields progress."""
     seed, title = making.recipe.seed + number, f"round {number + 1}"
-    where = (seed, str(zoo), making.data[number + 1], making.recipe.profile)
+    where = (seed, str(zoo), making.chosen[number], making.recipe.profile)
     if each.source == "active":
         active = Active(making.domain, each.scenarios, each.episodes, each.pool, *where)
         for step in run_active(active, making.jobs):

@@ -69,14 +69,24 @@ class Making:
         """Folder of the finished models."""
         return self.rounds / "zoo"
 
+    @property
+    def uncertain(self) -> Path:
+        """Folder of the random episodes of uncertain success."""
+        return self.rounds / "uncertain"
+
     def chooser(self, number: int) -> Path:
         """Folder of the models that choose the episodes of round `number`, from 0, and after all rounds calibrate."""
         return self.rounds / f"zoo-{number}"
 
     @property
-    def data(self) -> list[Path]:
-        """Folders with the data sets of the random episodes, and of each round."""
-        return [self.random, *(self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds)))]
+    def drawn(self) -> list[Path]:
+        """Folders with the data sets of random episodes."""
+        return [self.random, *([self.uncertain] if self.recipe.uncertain else [])]
+
+    @property
+    def chosen(self) -> list[Path]:
+        """Folder with the data sets of each round."""
+        return [self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds))]
 
     @property
     def calibration(self) -> list[Path]:

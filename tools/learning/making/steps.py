@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.tools.learning.gathering import data_set_spec, run_data_sets
-from tailor.tools.learning.making.episodes import gather_calibration, gather_random, gather_round
+from tailor.tools.learning.making.episodes import gather_calibration, gather_random, gather_round, gather_uncertain
 from tailor.tools.learning.making.installing import check_complete
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.training import train_all, training_request
@@ -44,14 +44,18 @@ def make(making: Making) -> Iterator[Step]:
     """
     check(making)
     yield from gather_random(making)
+    if making.recipe.uncertain:
+        zoo = making.rounds / "zoo-uncertain"
+        yield from train_all(making, zoo, [making.random], ("success",))
+        yield from gather_uncertain(making, zoo)
     for number, each in enumerate(making.recipe.rounds):
         zoo = making.chooser(number)
-        yield from train_all(making, zoo, making.data[: number + 1], CHOOSING)
+        yield from train_all(making, zoo, [*making.drawn, *making.chosen[:number]], CHOOSING)
         yield from gather_round(making, number, each, zoo)
     if making.recipe.calibration:
         zoo = making.chooser(len(making.recipe.rounds))
-        yield from train_all(making, zoo, making.data, CHOOSING)
+        yield from train_all(making, zoo, [*making.drawn, *making.chosen], CHOOSING)
         yield from gather_calibration(making, zoo)
-    data = [*making.data, *making.calibration]
+    data = [*making.drawn, *making.chosen, *making.calibration]
     yield from train_all(making, making.zoo, data, making.kinds or making.recipe.training.kinds)
     check_complete(making)
