@@ -124,6 +124,19 @@ def test_episodes_that_calibrate_correct_the_intervals_and_nothing_else() -> Non
         assert not corrected or (high - mean > 1.9).mean() > 0.9
 
 
+def test_selected_episodes_are_learned_from_but_judge_no_intervals() -> None:
+    episodes = data_set(240).episodes
+    late = [replace(e, number=1000 + e.number, duration_s=e.duration_s + 2, selected=True) for e in episodes[:150]]
+    without, mixed = (train_duration(each, projective, "linear", 3) for each in (episodes, [*episodes, *late]))
+    assert without.test["n"] == 60
+    assert 45 <= mixed.test["n"] <= 75, "a quarter of those at random"
+    rows = projective(np.stack([e.ticks[0] for e in episodes]))
+    (before, *_), (after, *_) = (each.learner.predict_interval(rows) for each in (without, mixed))
+    assert (after - before).mean() > 0.3
+    alone = train_duration([replace(e, selected=True) for e in episodes], projective, "linear", 3)
+    assert np.array_equal(alone.learner.predict_interval(rows), without.learner.predict_interval(rows))
+
+
 def with_failures(data: DataSet, failing: int) -> list[Episode]:
     return [replace(e, success=e.number >= failing, failure="") for e in data.episodes[:50]]
 

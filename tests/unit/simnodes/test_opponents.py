@@ -38,6 +38,12 @@ def test_an_opponent_stops_the_robot_at_its_side(radius_m):
     assert truths[0].opponents[0].radius_m == radius_m
 
 
+@pytest.mark.parametrize("radius_m", [0.0, -0.2, math.nan, math.inf, 2.1])
+def test_an_opponent_that_is_none_is_refused(radius_m):
+    assert AgiloBody().refusal({"opponent2_radius": radius_m}).startswith("opponent2_radius is ")
+    assert not AgiloBody().refusal({"opponent2_radius": 2.0, "x": 1.0})
+
+
 def test_a_robot_that_passes_beside_it_touches_nothing():
     _, readings = driven({**AHEAD, "opponent1_y": 0.36})
     assert not any(truth.touched for truth in messages(readings, OpponentsTruth))

@@ -176,6 +176,17 @@ def test_slipping_ball_is_steered_after():
     assert slipping.command[1] > 0.0, "the path turns right, the ball left"
 
 
+def test_straight_on_a_ball_to_the_right_is_pushed_as_one_to_the_left():
+    """The sign of a zero yaw rate decided whether the robot took the ball for creeping out of a turn."""
+    pushing = DRIBBLE(None, 0, believing(v=0.3, ball=seen(0.31, 0.0)), goal(2.0, 0.0, 0.0)).state
+    commands = [
+        DRIBBLE(pushing, 0, believing(v=0.3, ball=seen(0.31, left)), goal(2.0, 0.0, 0.0)).command
+        for left in (0.0, -0.03, 0.03)
+    ]
+    assert commands[0] == commands[1] == commands[2]
+    assert commands[0][1] == 0.0
+
+
 @pytest.mark.parametrize("goal_x", [-1.0, 2.0])
 def test_escaped_ball_is_left_only_if_fetching_it_would_lead_round_in_a_circle(goal_x):
     pushing = DRIBBLE(None, 0, believing(v=0.4, ball=seen(0.31, 0.0)), goal(goal_x, 0.0, 0.0)).state

@@ -13,7 +13,7 @@ from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.learning.gathering import choosing_models, manifests, policy_runs, random_episodes
-from tailor.tools.learning.making import installing, steps, training
+from tailor.tools.learning.making import episodes, installing, steps, training
 from tailor.tools.learning.making import making as making_module
 from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
@@ -25,6 +25,7 @@ from tailor.tools.learning.recipe import (
     Recipe,
     Round,
     Training,
+    UncertainEpisodes,
     read_recipe,
     recipe_path,
 )
@@ -62,6 +63,22 @@ def test_each_round_follows_the_models_of_all_episodes_before(tmp_path: Path, tr
     ]  # fmt: skip
     assert all(request.command == "make" for request in trained)
     assert {step.title: (step.done, step.total) for step in steps}["round 1: runs of approach"] == (1, 1)
+
+
+def test_models_of_random_episodes_choose_those_of_uncertain_success(
+    tmp_path: Path, trained: list, monkeypatch
+) -> None:
+    chosen = []
+    monkeypatch.setattr(episodes, "run_uncertain", lambda each, jobs: iter(chosen.append(each) or ()))
+    recipe = replace(TINY, beside=20, uncertain=(UncertainEpisodes("approachBall", 4, 5),))
+    list(make(Making("agilo", recipe, tmp_path, 1, "make")))
+    (each,) = chosen
+    assert (each.action, each.episodes, each.candidates, each.seed) == ("approachBall", 4, 20, 7)
+    assert (each.folder.parent.name, Path(each.zoo).name) == ("uncertain", "zoo-uncertain")
+    assert [(r.zoo.name, r.kinds == ("success",)) for r in trained] == [
+        ("zoo-uncertain", True), ("zoo-0", False), ("zoo", False)
+    ]  # fmt: skip
+    assert Making("agilo", recipe, tmp_path, 1, "make").drawn[1:] == [each.folder.parent]
 
 
 def test_finished_models_choose_what_corrects_their_intervals(tmp_path: Path, trained: list) -> None:

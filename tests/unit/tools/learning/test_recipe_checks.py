@@ -27,6 +27,7 @@ def test_a_number_of_objects_without_runs_beside_them_is_refused(tmp_path):
 
 
 OWN = "\n[[training.learners]]\naction = '{}'\nlearner = '{}'"
+UNCERTAIN = "\n[[uncertain]]\naction = '{}'\nepisodes = {}"
 ROUND = "episodes = 9\n[[rounds]]\nsource = '{}'\nscenarios = ['a', 'b']\nepisodes = {}"
 
 
@@ -53,6 +54,11 @@ def test_a_pool_is_for_active_rounds_only(tmp_path):
     ("robot", "text", "message"),
     [
         ("agilo", "[[random]]\naction = 'fly'\nepisodes = 3", "{path}: random episodes of 'fly', expected one of: "),
+        ("agilo", UNCERTAIN.format("fly", 3), "{path}: uncertain episodes of 'fly', expected one of: "),
+        ("agilo", UNCERTAIN.format("goToPose", 3), "{path}: action 'goToPose' of soccer has no model of success"),
+        ("agilo", UNCERTAIN.format("approachBall", 0), "{path}: uncertain.episodes is 0, expected at least 1"),
+        ("agilo", UNCERTAIN.format("approachBall", 33334), "{path}: 1000020 random tasks (episodes × pool)"),
+        ("agilo", UNCERTAIN.format("approachBall", 9) * 2, "{path}: uncertain: 'approachBall' is there twice"),
         ("agilo", "beside = 1000001", "{path}: 1000001 random episodes, expected at most 1000000"),
         ("agilo", "profile = 'x'", "{path}: no profile 'x' of soccer's body, expected one of: "),
         ("agilo", "[training]\nlearner = 'x'", "{path}: learner 'x' is unknown"),

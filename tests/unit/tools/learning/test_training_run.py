@@ -115,6 +115,7 @@ def test_no_duration_is_learned_from_episodes_that_calibrate_and_cards_count_the
             {"scenarios": ["a"], "on_policy": True, "calibrates": True},
             "--on-policy a --calibrates --episodes 5 --seed 3",
         ),
+        ({"candidates": 150}, "goToPose --uncertain --pool 30 --episodes 5 --seed 3"),
         ({"scenarios": ["a"], "situations": 20}, "--active a --pool 4 --episodes 5 --seed 3"),
     ],
 )
