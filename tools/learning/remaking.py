@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
-from tailor.tools.learning.recipe import recipe_path
+from tailor.tools.learning.recipe_file import recipe_path
 from tailor.tools.learning.target_zoo import target_zoo
 
 

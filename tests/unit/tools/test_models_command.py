@@ -14,7 +14,7 @@ from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.tools.commands.learn import train
-from tailor.tools.learning.recipe import read_recipe, recipe_path
+from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER
 from tailor.tools.main import main

@@ -30,7 +30,8 @@ from tailor.tools.evaluations.task_runs import paired, run_all
 from tailor.tools.learning.fresh_seeds import DIGITS
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.steps import make
-from tailor.tools.learning.recipe import Recipe, Round, read_recipe, recipe_path
+from tailor.tools.learning.recipe import Recipe, Round
+from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.parallel.steps import show
 
 BESIDE = 40  # runs beside objects: too few for a good model, enough to start; the scenario needs no objects

@@ -16,7 +16,8 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.steps import make
-from tailor.tools.learning.recipe import Round, read_recipe, recipe_path
+from tailor.tools.learning.recipe import Round
+from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.parallel.steps import show
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones

@@ -39,7 +39,7 @@ from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_better
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired, run_one
-from tailor.tools.learning.recipe import read_recipe, recipe_path
+from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.main import main
 
 COSTS = [f"{cost}_pct_{who}" for cost in ("failures", "contacts") for who in ("greedy", "refined")]

@@ -26,9 +26,8 @@ from tailor.tools.learning.recipe import (
     Round,
     Training,
     UncertainEpisodes,
-    read_recipe,
-    recipe_path,
 )
+from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.learning.training_request import TrainingRequest
 from tailor.tools.main import main
 
