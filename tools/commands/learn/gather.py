@@ -177,13 +177,20 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
 
 def _uncertain(arguments: argparse.Namespace, name: str, out: Path) -> int:
     """Gather random episodes whose success is uncertain."""
-    from tailor.tools.learning.gathering.uncertain_episodes import Uncertain, judged_actions, run_uncertain
+    from tailor.tools.learning.gathering.uncertain_episodes import (
+        Uncertain,
+        judged_actions,
+        run_uncertain,
+        success_model,
+    )
 
     for action in arguments.actions:
         random_episodes.check_action(name, action)
-    actions = arguments.actions or judged_actions(name)
+        success_model(name, action)  # raises UsageError if there is none
+    actions = list(dict.fromkeys(arguments.actions)) or judged_actions(name)
+    try_actions(name, actions)
     number = (arguments.episodes, arguments.pool or UNCERTAIN_POOL, arguments.seed, arguments.zoo)
-    sets = [Uncertain(name, action, *number, out / action, arguments.profile) for action in dict.fromkeys(actions)]
+    sets = [Uncertain(name, action, *number, out / action, arguments.profile) for action in actions]
     ready = [run_uncertain(each, arguments.jobs, arguments.resume) for each in sets]
     return shown(chain.from_iterable(ready), out, arguments.json)
 

@@ -71,6 +71,7 @@ class Point:
             shipped,
             episodes=count,
             random=(),
+            uncertain=(),
             beside=beside,
             seed=seed,
             rounds=rounds,

@@ -75,7 +75,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     training = replace(shipped.training, seed=FIRST_SEED + SEEDS * number)  # a set differs in all that is drawn
     own = replace(shipped, seed=training.seed, training=training)
     if recipe.episodes is not None:
-        own = replace(own, episodes=recipe.episodes, random=())
+        own = replace(own, episodes=recipe.episodes, random=(), uncertain=())
     if recipe.runs is not None:
         rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
         own = replace(own, rounds=rounds, calibration=())

@@ -7,16 +7,18 @@ import pytest
 
 from tailor.tools.evaluations.models import learning_curves
 from tailor.tools.evaluations.models.learning_curves import FIRST_RECIPE_SEED, METHODS, Point
-from tailor.tools.learning.recipe import Calibration, Recipe, Training
+from tailor.tools.learning.recipe import Calibration, RandomEpisodes, Recipe, Training, UncertainEpisodes
 from tailor.tools.main import main
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_way_of_gathering_has_as_many_episodes_of_each_action(method: str) -> None:
     calibration = (Calibration(("approach",), 50),)
-    shipped = Recipe(7, beside=1000, calibration=calibration, training=Training(learner="linear"))
+    further = {"random": (RandomEpisodes("approachBall", 9),), "uncertain": (UncertainEpisodes("approachBall", 9),)}
+    shipped = Recipe(7, beside=1000, calibration=calibration, training=Training(learner="linear"), **further)
     recipe = Point(method, 301).recipe(shipped, "approach", 9)
     assert recipe.episodes + sum(each.episodes for each in recipe.rounds) == 301
+    assert (recipe.random, recipe.uncertain) == ((), ())
     assert [each.source for each in recipe.rounds] == ([] if method == "random" else [method])
     assert (recipe.seed, recipe.calibration, recipe.training.learner) == (9, (), "linear")
     assert 0 < recipe.beside < 100  # or the executive refuses to start among objects

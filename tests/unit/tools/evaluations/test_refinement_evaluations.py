@@ -372,7 +372,7 @@ def test_a_set_of_models_is_made_by_the_recipe_of_those_that_ship_unless_numbers
     shipped = read_recipe(recipe_path("agilo"))
     own = replicas.replica(replicas.Recipe("soccer"), 1, tmp_path, 1).recipe
     assert (own.episodes, own.random, own.rounds) == (shipped.episodes, shipped.random, shipped.rounds)
-    assert (own.calibration, own.seed != shipped.seed) == (shipped.calibration, True)
+    assert (own.calibration, own.uncertain, own.seed != shipped.seed) == (shipped.calibration, shipped.uncertain, True)
     other = replicas.replica(replicas.Recipe("soccer", ("waypoints",), 60, 5), 1, tmp_path, 1).recipe
-    assert (other.episodes, other.random, other.calibration) == (60, (), ())
+    assert (other.episodes, other.random, other.uncertain, other.calibration) == (60, (), (), ())
     assert [(each.scenarios, each.episodes) for each in other.rounds] == [(("waypoints",), 5)]
