@@ -34,8 +34,6 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     for count in (recipe.episodes, *(each.episodes for each in recipe.random)):
         random_episodes.check_number(count)
     random_episodes.check_number(recipe.beside, recipe.objects)
-    for each in recipe.uncertain:
-        check_candidates(each.pool, each.episodes)
     named = [("random episodes", each.action) for each in recipe.random]
     named += [("uncertain episodes", each.action) for each in recipe.uncertain]
     named += [("a learner", each.action) for each in recipe.training.learners]
@@ -43,7 +41,8 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
         if action not in actions:
             raise UsageError(f"{what} of '{action}', expected one of: {', '.join(actions)}")
     for each in recipe.uncertain:
-        success_model(domain, each.action)
+        check_candidates(each.pool, each.episodes)
+        success_model(domain, each.action)  # raises UsageError if there is none
     for scenario in dict.fromkeys(name for _, each in recipe.chosen for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)

@@ -40,7 +40,9 @@ def test_an_opponent_stops_the_robot_at_its_side(radius_m):
 
 @pytest.mark.parametrize("radius_m", [0.0, -0.2, math.nan, math.inf, 2.1])
 def test_an_opponent_that_is_none_is_refused(radius_m):
-    assert AgiloBody().refusal({"opponent2_radius": radius_m}).startswith("opponent2_radius is ")
+    expected = f"opponent2_radius is {radius_m:g} m, expected above 0 and at most 2"
+    assert AgiloBody().refusal({"opponent2_radius": radius_m}) == expected
+    assert AgiloBody().refusal({"opponent2_radius": 0.2, "x": 1.0}) == ""
     assert not AgiloBody().refusal({"opponent2_radius": 2.0, "x": 1.0})
 
 

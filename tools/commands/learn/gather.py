@@ -177,17 +177,9 @@ def _random(arguments: argparse.Namespace, name: str, out: Path) -> int:
 
 def _uncertain(arguments: argparse.Namespace, name: str, out: Path) -> int:
     """Gather random episodes whose success is uncertain."""
-    from tailor.tools.learning.gathering.uncertain_episodes import (
-        Uncertain,
-        judged_actions,
-        run_uncertain,
-        success_model,
-    )
+    from tailor.tools.learning.gathering.uncertain_episodes import Uncertain, judged_actions, run_uncertain
 
-    for action in arguments.actions:
-        random_episodes.check_action(name, action)
-        success_model(name, action)  # raises UsageError if there is none
-    actions = list(dict.fromkeys(arguments.actions)) or judged_actions(name)
+    actions = judged_actions(name, arguments.actions)
     try_actions(name, actions)
     number = (arguments.episodes, arguments.pool or UNCERTAIN_POOL, arguments.seed, arguments.zoo)
     sets = [Uncertain(name, action, *number, out / action, arguments.profile) for action in actions]

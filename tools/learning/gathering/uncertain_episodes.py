@@ -23,7 +23,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
 from tailor.tools.learning.gathering import run_data_sets
 from tailor.tools.learning.gathering.data_set_spec import UNCERTAIN_STREAM, DataSetSpec, argument_names, draw
-from tailor.tools.learning.gathering.random_episodes import MAX_EPISODES, PART, run_one
+from tailor.tools.learning.gathering.random_episodes import MAX_EPISODES, PART, check_action, run_one
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.steps import Step, counted
@@ -99,14 +99,17 @@ def check_candidates(pool: int, episodes: int) -> None:
         raise UsageError(f"{pool * episodes} random tasks (episodes × pool), expected at most {MAX_EPISODES}")
 
 
-def judged_actions(domain: str) -> list[str]:
-    """Actions with a model of success, but for those that use another action's.
+def judged_actions(domain: str, requested: Sequence[str] = ()) -> list[str]:
+    """The requested actions, or all with a model of success but for those that use another action's.
 
     Raises:
-      UsageError: There is none.
+      UsageError: There is none, or the domain lacks a requested one, or it has none.
     """
+    for action in requested:
+        check_action(domain, action)
+        success_model(domain, action)
     declared = domains.load(domain).actions.values()
-    found = [each.name for each in declared if each.success_model.startswith(f"{each.name}/")]
+    found = list(dict.fromkeys(requested)) or [a.name for a in declared if a.success_model.startswith(f"{a.name}/")]
     if not found:
         raise UsageError(f"no action of {domain} has a model of success, expected one to be uncertain of")
     return found

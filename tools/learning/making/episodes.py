@@ -42,7 +42,7 @@ def gather_uncertain(making: Making, zoo: Path) -> Iterator[Step]:
 def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:
     """Gather round `number`, from 0, of episodes that the models in a zoo choose; yields progress."""
     seed, title = making.recipe.seed + number, f"round {number + 1}"
-    where = (seed, str(zoo), making.chosen[number], making.recipe.profile)
+    where = (seed, str(zoo), making.round(number), making.recipe.profile)
     if each.source == "active":
         active = Active(making.domain, each.scenarios, each.episodes, each.pool, *where)
         for step in run_active(active, making.jobs):

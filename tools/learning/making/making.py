@@ -83,10 +83,13 @@ class Making:
         """Folders with the data sets of random episodes."""
         return [self.random, *([self.uncertain] if self.recipe.uncertain else [])]
 
-    @property
-    def chosen(self) -> list[Path]:
-        """Folder with the data sets of each round."""
-        return [self.rounds / f"round-{k + 1}" for k in range(len(self.recipe.rounds))]
+    def round(self, number: int) -> Path:
+        """Folder with the data sets of round `number`, from 0."""
+        return self.rounds / f"round-{number + 1}"
+
+    def data(self, rounds: int) -> list[Path]:
+        """Folders with the data sets of random episodes, and of the first rounds."""
+        return [*self.drawn, *map(self.round, range(rounds))]
 
     @property
     def calibration(self) -> list[Path]:

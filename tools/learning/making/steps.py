@@ -48,14 +48,15 @@ def make(making: Making) -> Iterator[Step]:
         zoo = making.rounds / "zoo-uncertain"
         yield from train_all(making, zoo, [making.random], ("success",))
         yield from gather_uncertain(making, zoo)
-    for number, each in enumerate(making.recipe.rounds):
+    rounds = making.recipe.rounds
+    for number, each in enumerate(rounds):
         zoo = making.chooser(number)
-        yield from train_all(making, zoo, [*making.drawn, *making.chosen[:number]], CHOOSING)
+        yield from train_all(making, zoo, making.data(number), CHOOSING)
         yield from gather_round(making, number, each, zoo)
     if making.recipe.calibration:
-        zoo = making.chooser(len(making.recipe.rounds))
-        yield from train_all(making, zoo, [*making.drawn, *making.chosen], CHOOSING)
+        zoo = making.chooser(len(rounds))
+        yield from train_all(making, zoo, making.data(len(rounds)), CHOOSING)
         yield from gather_calibration(making, zoo)
-    data = [*making.drawn, *making.chosen, *making.calibration]
+    data = [*making.data(len(rounds)), *making.calibration]
     yield from train_all(making, making.zoo, data, making.kinds or making.recipe.training.kinds)
     check_complete(making)

@@ -198,10 +198,16 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
         (["agilo", "--profile", "x"], "no profile 'x' of soccer's body, expected one of: nominal, degraded"),
         (["agilo", "--profile", "degraded", "--from", "a.mcap"], "expected none with --from"),
         (["powercube", "--beside-object"], "no action of arm has a context of objects, expected one to gather beside"),
-        (["agilo", "--pool", "4"], "--pool counts the situations of --active and tasks of --uncertain, expected none"),
+        (
+            ["agilo", "--pool", "4"],
+            "--pool counts the situations of --active and tasks of --uncertain, expected none without",
+        ),
         (["agilo", "--pool", "2", "--on-policy", "approach"], "--pool counts the situations of --active"),
         (["agilo", "--calibrates", "--active", "approach"], "--calibrates is for choices of finished models, expected"),
-        (["agilo", "--zoo", "x"], "--zoo names the models that choose, expected none without --on-policy, --active"),
+        (
+            ["agilo", "--zoo", "x"],
+            "--zoo names the models that choose, expected none without --on-policy, --active or --uncertain",
+        ),
         (["agilo", "--resume", "--from", "a.mcap"], "--resume is for simulated runs, expected none with --from"),
         (["agilo", "--from", "a.mcap", "--episodes", "9"], "--episodes is for simulated runs, expected none with"),
         (["agilo", "--from", "a.mcap", "--seed", "9"], "--seed is for simulated runs, expected none with --from"),
