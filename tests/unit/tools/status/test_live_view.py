@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from contextlib import contextmanager, nullcontext
+from types import SimpleNamespace
 
 import pytest
 
@@ -108,7 +109,7 @@ def test_the_last_state_is_read_after_a_last_press_was_confirmed(viewed, monkeyp
 def test_the_last_state_is_that_of_the_moment_up_to_which_the_bus_was_read(viewed, monkeypatch):
     clock = iter(range(10**9, 10**12, 10**9))  # a second passes between any two looks at the clock
     read = []
-    monkeypatch.setattr(live_view.time, "monotonic_ns", lambda: next(clock))
+    monkeypatch.setattr(live_view, "time", SimpleNamespace(monotonic_ns=lambda: next(clock), sleep=time.sleep))
     monkeypatch.setattr(live_view.Watcher, "poll", lambda self, now_ns: read.append(now_ns))
     monkeypatch.setattr(live_view.SystemModel, "__init__", lambda self, now_ns: None)
     monkeypatch.setattr(live_view.SystemModel, "picture", lambda self, now_ns: now_ns)
