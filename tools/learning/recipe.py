@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-UNCERTAIN_POOL = 30  # tasks drawn for each episode of uncertain success
+from tailor.tools.learning.gathering.options import POOL, UNCERTAIN_POOL
+
 MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
 
 
@@ -23,7 +24,7 @@ class Round:
     source: Literal["on-policy", "active"]
     scenarios: tuple[str, ...]
     episodes: int
-    pool: int = 4
+    pool: int = POOL
 
     @property
     def situations(self) -> int:

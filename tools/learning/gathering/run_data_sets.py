@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,21 +21,27 @@ def prepare(
     Raises:
       UsageError: One of them holds other episodes, or the same ones without `resume`; nothing is written then.
     """
+    create({folder / action: manifest(domain, folder, action, about, len(runs)) for action in names}, resume)
+
+
+def manifest(domain: str, folder: Path, action: str, about: dict[str, Any], runs: int) -> dict[str, Any]:
+    """The manifest of the episodes of an action in a number of runs; `about` is added to it."""
     loaded = domains.load(domain)
-    manifests = {
-        folder / action: {
-            "robot": loaded.robot,
-            "domain": domain,
-            "action": action,
-            "arguments": argument_ranges(loaded, DataSetSpec(domain, action, 0, 0, folder)),
-            **context_entry(loaded, action, names=()),
-            "runs": len(runs),
-            **source_entries(domain),
-            "on_policy": True,
-            **about,
-        }
-        for action in names
+    return {
+        "robot": loaded.robot,
+        "domain": domain,
+        "action": action,
+        "arguments": argument_ranges(loaded, DataSetSpec(domain, action, 0, 0, folder)),
+        **context_entry(loaded, action, names=()),
+        "runs": runs,
+        **source_entries(domain),
+        "on_policy": True,
+        **about,
     }
+
+
+def create(manifests: Mapping[Path, dict[str, Any]], resume: bool) -> None:
+    """Create data set folders with their manifests; see `prepare`."""
     for place, manifest in manifests.items():
         check_resumable(place, manifest, resume)
     for place, manifest in manifests.items():

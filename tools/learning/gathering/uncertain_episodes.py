@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,18 +68,31 @@ class Uncertain:
         return DataSetSpec(*drawn, stream=UNCERTAIN_STREAM, profile=self.profile)
 
 
-def run_uncertain(uncertain: Uncertain, jobs: int, resume: bool = True) -> Iterator[Step]:
-    """Check and prepare the folder; then select tasks, and run the missing episodes.
+def run_uncertain(sets: Sequence[Uncertain], jobs: int, resume: bool = True) -> Iterator[Step]:
+    """Check and prepare all folders; then, for each, select tasks, and run the missing episodes.
 
     Returns:
       Progress, while it is iterated over.
 
     Raises:
-      UsageError: The folder holds other episodes, or the same ones without `resume`; or there are too many tasks, or
-        the action has no model of success, or it fails its checks.
+      UsageError: A folder holds other episodes, or the same ones without `resume`; or there are too many tasks, or an
+        action has no model of success, or it fails its checks. Nothing is written then.
     """
-    check_candidates(uncertain.pool, uncertain.episodes)
-    model, sha256 = _model(uncertain)
+    for each in sets:
+        check_candidates(each.pool, each.episodes)
+    models = [_model(each) for each in sets]
+    manifests = {each.folder: _manifest(each, sha256) for each, (_, sha256) in zip(sets, models, strict=True)}
+    run_data_sets.create(manifests, resume)
+    return _run_sets(sets, [model for model, _ in models], jobs)
+
+
+def _run_sets(sets: Sequence[Uncertain], models: Sequence[SuccessModel], jobs: int) -> Iterator[Step]:
+    for each, model in zip(sets, models, strict=True):
+        yield from _select_and_run(each, model, jobs)
+
+
+def _manifest(uncertain: Uncertain, sha256: str) -> dict[str, Any]:
+    """The manifest of a data set whose episodes a model of that hash selects."""
     about = {
         "source": "lock-step, random arguments whose success is least certain",
         "seed": uncertain.seed,
@@ -88,9 +102,8 @@ def run_uncertain(uncertain: Uncertain, jobs: int, resume: bool = True) -> Itera
         "models_sha256": sha256,
         **({"profile": uncertain.profile} if uncertain.profile else {}),
     }
-    runs = range(uncertain.episodes)
-    run_data_sets.prepare(uncertain.domain, uncertain.folder.parent, [uncertain.action], about, runs, resume)
-    return _select_and_run(uncertain, model, jobs)
+    place = (uncertain.domain, uncertain.folder.parent, uncertain.action)
+    return run_data_sets.manifest(*place, about, uncertain.episodes)
 
 
 def check_candidates(pool: int, episodes: int) -> None:

@@ -34,9 +34,10 @@ def gather_random(making: Making) -> Iterator[Step]:
 
 def gather_uncertain(making: Making, zoo: Path) -> Iterator[Step]:
     """Gather the random episodes of whose success the models in a zoo are least certain; yields progress."""
-    for each in making.recipe.uncertain:
-        where = (making.recipe.seed, str(zoo), making.uncertain / each.action, making.recipe.profile)
-        yield from run_uncertain(Uncertain(making.domain, each.action, each.episodes, each.pool, *where), making.jobs)
+    recipe, models = making.recipe, (making.recipe.seed, str(zoo))
+    drawn = [((each.action, each.episodes, each.pool), making.uncertain / each.action) for each in recipe.uncertain]
+    sets = [Uncertain(making.domain, *what, *models, folder, recipe.profile) for what, folder in drawn]
+    yield from run_uncertain(sets, making.jobs)
 
 
 def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterator[Step]:

@@ -1,6 +1,7 @@
 """Gathering random episodes of uncertain success: which tasks are run, and that they resume to the same bits."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +55,7 @@ def test_the_least_certain_of_all_tasks_are_run_as_they_were_drawn(gathered: Pat
 
 def test_an_interrupted_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path, capsys) -> None:
     uncertain = Uncertain("soccer", "approachBall", 21, 3, 7, "", tmp_path / "approachBall")
-    steps = run_uncertain(uncertain, 1, resume=False)
+    steps = run_uncertain([uncertain], 1, resume=False)
     assert [next(steps).done, next(steps).done] == [0, 20]
     steps.close()  # the process dies after the first part
     assert main(["gather", "agilo", *FLAGS, "--out", str(tmp_path)]) == 2
@@ -79,6 +80,13 @@ def test_other_tasks_are_not_mixed_in(gathered: Path, capsys, flags, message) ->
     assert main(["gather", "agilo", *FLAGS, *flags, "--out", str(gathered), "--resume"]) == 2
     assert message in capsys.readouterr().err
     assert len(read_data_set(gathered / "approachBall").episodes) == 21
+
+
+def test_no_folder_is_made_where_that_of_another_action_is_refused(gathered: Path, tmp_path: Path) -> None:
+    free = Uncertain("soccer", "approachBall", 21, 3, 7, "", tmp_path / "approachBall")
+    with pytest.raises(UsageError, match="--resume"):
+        run_uncertain([free, replace(free, folder=gathered / "approachBall")], 1, resume=False)
+    assert not free.folder.exists()
 
 
 def test_tasks_of_another_model_are_not_mixed_in(gathered: Path, capsys, monkeypatch) -> None:
