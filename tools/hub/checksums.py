@@ -36,11 +36,9 @@ def checked_files(folder: Path, kind: str) -> list[Path]:
       kind: "model" or "dataset", for errors.
 
     Raises:
-      UsageError: There is no list, a file is missing or differs, or the list is none, too large or of the other kind.
+      UsageError: There is no list, a file is missing or differs, or the list is none or of the other kind.
     """
     try:
-        if (size := (folder / CHECKSUMS).stat().st_size) > MAX_BYTES:
-            raise UsageError(f"{CHECKSUMS} has {size} bytes, expected at most {MAX_BYTES}")
         lines = (folder / CHECKSUMS).read_text(encoding="utf-8").splitlines()
     except (OSError, ValueError):
         raise UsageError(f"there is no {CHECKSUMS}, expected what `tailor models push` wrote") from None

@@ -44,6 +44,18 @@ def upload(folder: Path, repository: str, kind: str, public: bool) -> str:
         return str(done.commit_url)
 
 
+def file_sizes(repository: str, kind: str, revision: str | None) -> dict[str, int]:
+    """Bytes of each file of a repository, by path.
+
+    Raises:
+      UsageError: There is no such repository or revision, or the hub cannot be reached.
+    """
+    with _errors(repository):
+        api = huggingface_hub.HfApi(_endpoint())
+        tree = api.list_repo_tree(repository, recursive=True, revision=revision, repo_type=kind)
+        return {entry.path: entry.size for entry in tree if isinstance(entry, huggingface_hub.hf_api.RepoFile)}
+
+
 def download(repository: str, kind: str, revision: str | None, patterns: Sequence[str], folder: Path) -> None:
     """Get the files of a repository that match patterns into an empty folder.
 

@@ -5,21 +5,24 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from tailor.models.cards.card import card_path
+from tailor.models.cards.card import MAX_CARD_BYTES, MAX_MODEL_BYTES, card_path
 from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
-from tailor.tools.hub.checksums import CHECKSUMS, write_checksums
+from tailor.tools.hub.checksums import CHECKSUMS, MAX_BYTES, write_checksums
 from tailor.tools.hub.data_card import data_card
 from tailor.tools.hub.licence import licence_of
 from tailor.tools.hub.model_card import model_card
 
 README = "README.md"
-MODEL_FILES = ("*/*/*.onnx", "*/*/*.card.json", CHECKSUMS)
-DATA_FILES = ("*/part-*.parquet", f"*/{MANIFEST}", CHECKSUMS)
+MAX_MANIFEST_BYTES = 10_000_000  # of what is read whole: one of thousands of recordings has less than 1 MB
+MAX_PART_BYTES = 1_000_000_000  # a part holds some megabytes
+# What is pulled: patterns of files, and the most bytes of each such file.
+MODEL_FILES = {"*/*/*.onnx": MAX_MODEL_BYTES, "*/*/*.card.json": MAX_CARD_BYTES, CHECKSUMS: MAX_BYTES}
+DATA_FILES = {"*/part-*.parquet": MAX_PART_BYTES, f"*/{MANIFEST}": MAX_MANIFEST_BYTES, CHECKSUMS: MAX_BYTES}
 
 
 def write_models(zoo: Path, robot: str, licence: str | None, folder: Path) -> None:

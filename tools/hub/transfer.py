@@ -8,12 +8,12 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.executive.robot_models import check_fit
-from tailor.models.cards.card import card_path, read_bytes
+from tailor.models.cards.card import card_path
 from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
@@ -22,13 +22,11 @@ from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
 from tailor.tools.cli.word_lists import abbreviated
-from tailor.tools.hub.checksums import checked_files
-from tailor.tools.hub.client import download, upload
+from tailor.tools.hub.client import upload
+from tailor.tools.hub.fetching import fetched
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
 from tailor.tools.hub.place import Place
 from tailor.tools.learning.target_zoo import target_zoo
-
-MAX_MANIFEST_BYTES = 10_000_000  # of what is read whole: one of thousands of recordings has less than 1 MB
 
 
 def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:
@@ -67,7 +65,7 @@ def pull_models(place: Place, revision: str | None, zoo: Path | None, replace: b
         models of that robot.
     """
     with _temporary_beside((zoo or Path(tempfile.gettempdir())) / "pull") as temporary:
-        files = _fetched(place, "model", revision, MODEL_FILES, temporary)
+        files = fetched(place, "model", revision, MODEL_FILES, temporary)
         models = [file for file in files if file.suffix == ".onnx" and len(file.parts) == 3]
         robots = {model.parts[0] for model in models}
         if len(robots) != 1:
@@ -89,13 +87,12 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
         has a data set of that name, or something else, which `replace` does not remove.
     """
     with _temporary_beside(data) as temporary:
-        files = _fetched(place, "dataset", revision, DATA_FILES, temporary)
+        files = fetched(place, "dataset", revision, DATA_FILES, temporary)
         names = sorted({file.parts[0] for file in files if file.name == MANIFEST and len(file.parts) == 2})
         if not names:
             raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
         with _errors_of(place, temporary):
             for name in names:
-                read_bytes(temporary / name / MANIFEST, MAX_MANIFEST_BYTES)
                 read_manifest(temporary / name)
         existing = [data / name for name in names if os.path.lexists(data / name)]
         _refuse([path for path in existing if not replace])
@@ -124,27 +121,6 @@ def _temporary_beside(target: Path) -> Iterator[Path]:
         for parent in made:
             with suppress(OSError):
                 parent.rmdir()
-
-
-def _fetched(place: Place, kind: str, revision: str | None, patterns: Sequence[str], into: Path) -> list[Path]:
-    """Files of a place, as its checksums list them."""
-    if place.folder is None:
-        download(str(place.repository), kind, revision, patterns, into)
-    elif not place.folder.is_dir():
-        raise UsageError(f"{place}: no such folder, expected what `tailor models push --to {place}` wrote")
-    else:
-        for file in (file for pattern in patterns for file in place.folder.glob(pattern) if file.is_file()):
-            target = into / file.relative_to(place.folder)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(file, target)
-    try:
-        files = checked_files(into, kind)
-    except UsageError as error:
-        raise UsageError(f"{place}: {error}") from None
-    listed = {into / file for file in files}
-    for path in [path for path in into.rglob("*") if path.is_file() and path not in listed]:
-        path.unlink()  # no checksum covers it
-    return files
 
 
 @contextmanager

@@ -12,13 +12,19 @@ TOKEN = "hf_test"
 
 
 class Hub:
-    """Files of each repository, by kind and name; `answers` replaces the content that is sent for a file."""
+    """Files of each repository, by kind and name.
+
+    `answers` replaces the content that is sent for a file, `announced` its size in the list of files; `sent` holds the
+    files that were sent.
+    """
 
     def __init__(self):
         self.files = {}
         self.visibility = {}
         self.commits = 0
         self.answers = {}
+        self.announced = {}
+        self.sent = []
         self.url = ""
 
     def sha(self, key):
@@ -79,7 +85,8 @@ def handler(hub):
                 files = self.files[kind, name]
                 if what == "revision":
                     return self.reply(200, {"id": name, "sha": sha, "siblings": [{"rfilename": p} for p in files]})
-                rows = [{"type": "file", "path": p, "size": len(c), "oid": _oid(c)} for p, c in files.items()]
+                sizes = {path: len(content) for path, content in files.items()} | hub.announced
+                rows = [{"type": "file", "path": p, "size": sizes[p], "oid": _oid(c)} for p, c in files.items()]
                 return self.reply(200, rows)
             found = re.fullmatch(r"/(datasets/)?([^/]+/[^/]+)/resolve/(\w+)/(.+)", path)
             if not found:
@@ -87,6 +94,7 @@ def handler(hub):
             dataset, name, _, file = found.groups()
             key = ("dataset" if dataset else "model", name)
             content = hub.answers.get(file, self.files[key][file])
+            hub.sent += [file] if self.command == "GET" else []
             headers = [("ETag", f'"{_oid(content)}"'), ("X-Repo-Commit", hub.sha(key))]
             return self.reply(200, content, headers)
 

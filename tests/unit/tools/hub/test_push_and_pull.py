@@ -311,7 +311,23 @@ def test_what_a_pull_reads_whole_has_a_limit(folder, tmp_path, capsys):
     assert "data/go/manifest.json: has 11000000 bytes, expected at most 10000000" in line
     os.truncate(folder / "SHA256SUMS", 12_000_000)
     line = refused(capsys, "pull", "--from", "./pushed", "--zoo", "zoo")
-    assert "pushed: SHA256SUMS has 12000000 bytes, expected at most 10000000" in line
+    assert "pushed/SHA256SUMS: has 12000000 bytes, expected at most 10000000" in line
+
+
+def test_a_file_that_is_too_large_is_not_downloaded(hub, capsys):
+    assert main(["models", "push", ROBOT, "--to", "user/arm-models"]) == 0
+    hub.announced[FILES[0]] = 100_000_000_000
+    line = refused(capsys, "pull", "--from", "user/arm-models", "--zoo", "zoo")
+    assert f"user/arm-models/{FILES[0]}: has 100000000000 bytes, expected at most 67108864" in line
+    assert hub.sent == []
+
+
+def test_a_file_that_is_larger_than_announced_is_refused(hub, capsys):
+    assert main(["models", "push", ROBOT, "--to", "user/arm-models"]) == 0
+    hub.answers[FILES[1]] = b" " * (1 << 20) + b"{}"
+    line = refused(capsys, "pull", "--from", "user/arm-models", "--zoo", "zoo")
+    assert f"user/arm-models/{FILES[1]}: has 1048578 bytes, expected at most 1048576" in line
+    assert len(hub.sent) == 5
 
 
 def test_a_refused_pull_leaves_no_folders(tmp_path, monkeypatch, capsys):
