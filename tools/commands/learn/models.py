@@ -38,7 +38,7 @@ examples:
 
 MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), duration_beside (beside objects), energy, success, or
 clearance (success beside an object). ROBOT alone stands for all its models; no MODEL stands for all models in the zoo.
---of is for models of trees: a bag (durations of b21) or a forest."""
+--of is for models of trees: a bag (durations of b21's arm) or a forest."""
 VERBS = ("list", "show", "rules", "plot", "check", "push", "pull")
 TAKEN_BY = {  # flag -> verbs; the others would ignore it
     "--json": ("list", "show", "check", *sharing.VERBS),

@@ -39,8 +39,9 @@ examples:
   tailor train powercube
 
 A data set is what `tailor gather` writes to DATA/ACTION. Each action gets a duration model, an energy model if its
-episodes record the work of the drives, and a success model if some of them failed. The test trains on three quarters
-of the episodes and reports errors on the last quarter. The published model is fitted to all episodes."""
+episodes record the work of the drives, and a success model if the action names one or at least 2 % of them failed.
+The test trains on three quarters of the episodes and reports errors on the last quarter. The published model is fitted
+to all episodes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

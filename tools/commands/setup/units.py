@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("folder", metavar="DIR", type=Path, help="folder for the files, e.g. /etc/systemd/system; made if missing")
     add("--domain", default="soccer", help="domain to run (default soccer)")
     add("--scenario", help="scenario of the domain (default: its first)")
-    add("--user", default="", help="user of the services (default: you)")
+    add("--user", default="", help="user of the services (default: you, unless you are root)")
     add("--parts", metavar="LIST", default="", help=f"parts on this machine (default: {','.join(PARTS)})")
     add("--record", metavar="DIR", help="folder of the recordings; without it there is no recorder")
     add("--driver-command", metavar="COMMAND", default="", help="driver of the hardware, instead of the simulator")
