@@ -24,6 +24,7 @@ def runtime() -> Iterator[Path]:
         yield Path(folder)
 
 
+@pytest.mark.promise("P45")
 @pytest.mark.parametrize("command", BEGINNINGS, ids=" ".join)
 def test_a_bus_ends_when_its_folder_was_removed(command, runtime, tmp_path, monkeypatch):
     """The end of a login session removes $XDG_RUNTIME_DIR, also below a bus that runs on in tmux."""
