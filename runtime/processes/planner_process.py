@@ -78,7 +78,7 @@ class PlannerProcess:
         self._output = bytearray()
         self._answer: PlannerAnswer | None = None
         try:
-            self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-")
+            self._folder = tempfile.TemporaryDirectory(prefix="tailor-planner-", ignore_cleanup_errors=True)
         except OSError as error:
             raise _cannot_start(command, error) from None
         self._child = self._start(command, {"domain.pddl": domain, "problem.pddl": problem})
@@ -149,15 +149,20 @@ class PlannerProcess:
     def _end(self, outcome: Outcome, reason: str) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._child.pid, signal.SIGKILL)  # a child that has ended may have left children
-        if outcome in ("timeout", "flood"):  # on a thread that outlives the tick, and is awaited at the end
-            threading.Thread(target=end_session, args=(self._child.pid,), name="planner-end").start()
+        killed = outcome in ("timeout", "flood")  # on a thread that outlives the tick, and is awaited at the end
+        threading.Thread(target=self._tidy, args=(killed,), name="planner-end").start()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(_REAP_S)
         assert self._child.stdout is not None
         self._child.stdout.close()
-        self._folder.cleanup()
         text = self._output[: self._max_bytes].decode("utf-8", errors="replace")
         self._answer = PlannerAnswer(outcome, text, reason)
+
+    def _tidy(self, killed: bool) -> None:
+        """Remove the files; those of the planner as well, which may be many, once nobody writes more beside them."""
+        if killed:
+            end_session(self._child.pid)
+        self._folder.cleanup()
 
 
 def split_command(command: str) -> list[str]:

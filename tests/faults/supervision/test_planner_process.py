@@ -10,7 +10,7 @@ import pytest
 from tailor.executive.planning import PlanTextError, parse_plan, validate
 from tailor.runtime.processes.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from tailor.schemas.errors import UsageError
-from tests.support.patience import PATIENCE_S, first_line, gone, is_alive
+from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 from tests.support.planning_problems import DATA, own, printed
 from tests.support.stalls import repeat_on_stall
 
@@ -105,6 +105,35 @@ def test_a_planner_that_ignores_signals_is_killed_as_well(tmp_path):
     child, answer, _ = run(program(tmp_path, body), limit_s=0.5)
     assert answer.outcome == "timeout"
     assert gone(child.pid)
+
+
+WRITER = """
+import itertools, os, sys
+for number in itertools.count():
+    os.close(os.open(os.path.join(sys.argv[1], f"{number}"), os.O_CREAT))
+    if number == 20000:
+        print("many", flush=True)"""
+
+
+@pytest.mark.promise("P8")
+def test_files_that_a_planner_writes_beside_its_problem_hold_up_no_poll_and_are_removed(tmp_path):
+    """The writer has a group of its own, as below `timeout`, so it still writes when the planner has been killed."""
+    body = f"""
+folder = os.path.dirname(sys.argv[-1])
+writer = subprocess.Popen([sys.executable, "-c", {WRITER!r}, folder], process_group=0, stdout=subprocess.PIPE)
+writer.stdout.readline()
+print(folder, flush=True)
+time.sleep(60)"""
+    limits = iter((3.0, 12.0, 48.0))
+
+    def written():
+        _, answer = run_without_blocking(program(tmp_path, body), next(limits))
+        assert answer.outcome == "timeout"
+        assert "tailor-planner-" in answer.output
+        return Path(answer.output.strip())
+
+    folder = repeat_on_stall(3, written)
+    wait_until(lambda: not folder.exists(), "the files are removed")
 
 
 def test_a_planner_that_crashes_has_no_plan(tmp_path):
