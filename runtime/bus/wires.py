@@ -8,7 +8,7 @@ from typing import Any
 
 import zenoh
 
-from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Raw
 from tailor.runtime.bus.ros_wires import as_plain
 from tailor.schemas.ros2.profiles import KeyProfile
 
@@ -57,9 +57,10 @@ class RingSource:
 
     def receive(self) -> Raw | None:
         """The oldest of them that is one of ours, with its plain key; None if there is none."""
-        while (sample := self._subscriber.try_recv()) is not None:
-            raw = as_plain(raw_of(sample, self._max_bytes), self._keys)
-            if raw is not None:
+        for _ in range(EVENT_DEPTH):  # a flood of copies, none of which is returned, would have no end
+            sample = self._subscriber.try_recv()
+            raw = None if sample is None else as_plain(raw_of(sample, self._max_bytes), self._keys)
+            if sample is None or raw is not None:
                 return raw
         return None
 

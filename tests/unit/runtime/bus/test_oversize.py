@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import pytest
 import zenoh
 
-from tailor.runtime.bus.inbox import Inbox
+from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox
 from tailor.runtime.bus.service import QueryableSource, text_request
 from tailor.runtime.bus.wires import RingSource
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Odometry
-from tailor.schemas.ros2.profiles import PLAIN
+from tailor.schemas.ros2.profiles import COPY, PLAIN, KeyProfile, ros_topic
 from tailor.schemas.services import MAX_REQUEST_BYTES
 from tailor.schemas.topics import TOPICS
 
@@ -60,6 +60,22 @@ def test_a_message_of_the_largest_length_is_read():
     inbox = inbox_of(Payload(GOOD + bytes(ODOM.max_bytes - len(GOOD))))
     assert inbox.drain() == ()
     assert dict(inbox.rejected) == {(KEY, "trailing bytes"): 1}
+
+
+@pytest.mark.promise("P17")
+def test_of_a_flood_of_copies_a_turn_has_an_end():
+    """A session that hears both keys takes a message once; what it leaves out is reading, too."""
+    copy, read = SimpleNamespace(**{**vars(sample(Payload(GOOD))), "encoding": COPY}), []
+    copy.key_expr = ros_topic(ODOM, "agilo").key(0)
+
+    def flood():
+        read.append(1)
+        assert len(read) < 1000, "no end"
+        return copy
+
+    ring = RingSource(SimpleNamespace(try_recv=flood), KeyProfile("both"), ODOM.max_bytes)
+    assert Inbox([(ODOM, KEY, ring)], lambda: 0, lambda: 0).drain() == ()
+    assert len(read) == EVENT_DEPTH
 
 
 class Query:
