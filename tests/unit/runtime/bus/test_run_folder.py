@@ -5,7 +5,8 @@ import os
 import shutil
 import socket
 import stat
-from contextlib import ExitStack
+import threading
+from contextlib import ExitStack, suppress
 from tempfile import TemporaryDirectory
 
 import pytest
@@ -219,6 +220,25 @@ def test_a_router_in_a_folder_that_others_may_write_is_not_ours(monkeypatch, whi
         assert folder.running()
         (folder.path.parent if which == "of all runs" else folder.path).chmod(0o777)
         assert not folder.running()
+
+
+def test_a_router_that_stands_still_runs_however_many_wait_for_it(base):
+    """A further connection waits for ever, and with it an e-stop that nobody reports as failed."""
+    folder = left_behind()
+    with ExitStack() as waiting:
+        router = waiting.enter_context(socket.socket(socket.AF_UNIX))
+        router.bind(str(folder.path / SOCKET))
+        router.listen(1)
+        for _ in range(5):
+            client = waiting.enter_context(socket.socket(socket.AF_UNIX))
+            client.setblocking(False)
+            with suppress(BlockingIOError):
+                client.connect(str(folder.path / SOCKET))
+        answers = []
+        looking = threading.Thread(target=lambda: answers.append(folder.running()), daemon=True)
+        looking.start()
+        looking.join(5)
+        assert answers == [True]
 
 
 @pytest.mark.parametrize("session", ["", "runtime"])
