@@ -69,10 +69,11 @@ def text_request(query: Any) -> ServiceRequest:
     text = "" if payload is None else payload.to_bytes().decode(errors="replace")
 
     def respond(accepted: bool, response: str) -> None:
+        sent = response.encode(errors="backslashreplace")  # half a character, as JSON may name one, is no text
         if accepted:
-            query.reply(query.key_expr, response)
+            query.reply(query.key_expr, sent)
         else:
-            query.reply_err(response)
+            query.reply_err(sent)
         query.drop()
 
     return ServiceRequest(text, respond)

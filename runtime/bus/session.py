@@ -212,10 +212,11 @@ class Session:
         Returns:
           (accepted, response); (False, reason) if there is no such service or no response in time.
         """
-        for reply in self._zenoh.get(key, payload=text, timeout=timeout_s):
+        sent = text.encode(errors="backslashreplace")  # a word of a command line need not be text
+        for reply in self._zenoh.get(key, payload=sent, timeout=timeout_s):
             if reply.ok is not None:
-                return True, reply.ok.payload.to_string()
-            error = "" if reply.err is None else reply.err.payload.to_string()
+                return True, _text(reply.ok.payload)
+            error = "" if reply.err is None else _text(reply.err.payload)
             return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
         return False, no_service(key)
 
@@ -242,10 +243,15 @@ class Session:
         return filled, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
 
 
+def _text(payload: Any) -> str:
+    """A response, of whatever process: bytes that are no UTF-8 are replaced."""
+    return str(payload.to_bytes().decode(errors="replace"))
+
+
 def _is_one_key(key: str) -> bool:
     """Whether zenoh accepts a key and it is not a pattern."""
     try:
         zenoh.KeyExpr(key)
-    except zenoh.ZError:
+    except (zenoh.ZError, UnicodeEncodeError):
         return False
     return "*" not in key and len(key.encode()) <= MAX_KEY_BYTES

@@ -31,7 +31,8 @@ BY_CERTIFICATE = Password(*CERTIFICATE_USER.split(":"))
 PRIORITIES = ("control", *TOPIC_PRIORITIES)
 # Allocated as a session opens: else each backlog takes further buffers of 64 kB, and memory grows for hours.
 QUEUES = {"allocation": {"mode": "init"}, "size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}
-_ENDPOINT = re.compile(r"(tcp|tls|quic|udp|ws)/(\[[0-9a-fA-F:]+\]|[A-Za-z0-9.-]+):([0-9]{1,5})")
+_LABEL = r"[A-Za-z0-9-]{1,63}"  # of a host's name; Python looks up no name with an empty or a longer one
+_ENDPOINT = re.compile(rf"(tcp|tls|quic|udp|ws)/(\[[0-9a-fA-F:]{{2,45}}\]|({_LABEL}\.)*{_LABEL}\.?):([0-9]{{1,5}})")
 
 
 def check_endpoint(endpoint: str) -> str:
@@ -41,7 +42,7 @@ def check_endpoint(endpoint: str) -> str:
       UsageError: The endpoint does not have the form PROTOCOL/HOST:PORT.
     """
     match = _ENDPOINT.fullmatch(endpoint)
-    if not match or not 0 < int(match[3]) < 65536:
+    if not match or not 0 < int(match[4]) < 65536:
         raise UsageError(f"bus endpoint {endpoint!r}: expected PROTOCOL/HOST:PORT, e.g. {DEFAULT_ENDPOINT}")
     return endpoint
 

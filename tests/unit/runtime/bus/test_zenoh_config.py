@@ -10,6 +10,7 @@ from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password
 from tailor.runtime.bus.rights.run_folder import RunFolder
+from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.package_topics import PRIORITIES
 from tailor.schemas.services import ROLES
 
@@ -30,6 +31,21 @@ def folder(tmp_path):
 
 def test_nothing_beyond_this_machine_is_reached_by_default():
     assert zenoh_config.DEFAULT_ENDPOINT == "tcp/127.0.0.1:7447"
+
+
+@pytest.mark.parametrize(
+    "endpoint",
+    ["tcp/a..b:7447", "tcp/.a:7447", f"tcp/{'a' * 64}:7447", "tcp/-:0", f"tcp/[{'0' * 64}]:7447", "tcp/a:65536"],
+)
+def test_an_endpoint_at_which_no_host_can_be_is_refused(endpoint):
+    """Python raises an error of Unicode for a name with an empty part, where it is looked up."""
+    with pytest.raises(UsageError, match="expected PROTOCOL/HOST:PORT"):
+        zenoh_config.check_endpoint(endpoint)
+
+
+@pytest.mark.parametrize("host", ["localhost", "robot-3.example.org", "robot.", "10.0.0.7", "[::1]", "a" * 63])
+def test_an_endpoint_has_a_host_of_any_name(host):
+    assert zenoh_config.check_endpoint(f"tls/{host}:7448") == f"tls/{host}:7448"
 
 
 def test_no_session_looks_for_others_or_lets_itself_be_found():
