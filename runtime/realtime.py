@@ -75,8 +75,8 @@ def elevate_bus_threads(priority: int = BUS_PRIORITY) -> str:
                 # No reset on fork: the workers that such a thread starts later inherit its priority.
                 os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(priority))
                 elevated += 1
-        except FileNotFoundError:
-            continue  # the thread has ended
+        except (FileNotFoundError, ProcessLookupError):
+            continue  # the thread has ended, before its name was read or after
         except OSError as error:
             return f"default: {error.strerror}"
     return f"fifo {priority}, {elevated} threads"

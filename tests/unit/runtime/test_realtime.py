@@ -1,5 +1,6 @@
 """Privileges of a real-time process, in a process of its own."""
 
+import errno
 import json
 import os
 import subprocess
@@ -8,6 +9,7 @@ import weakref
 
 import pytest
 
+from tailor.runtime import realtime
 from tailor.runtime.gc_freeze import gc_disabled, gc_frozen
 from tailor.runtime.realtime import MAX_OLD_OBJECTS, OLD_TICKS, collect_garbage, inherited_fifo
 from tailor.schemas.errors import UsageError
@@ -62,7 +64,7 @@ from tailor.runtime.bus import opening
 def threads():
     found = {}
     for thread in Path("/proc/self/task").iterdir():
-        with suppress(FileNotFoundError):  # zenoh ends idle ones
+        with suppress(FileNotFoundError, ProcessLookupError):  # zenoh ends idle ones
             found[int(thread.name)] = (thread / "comm").read_text().strip(), os.sched_getscheduler(int(thread.name))
     return found
 
@@ -117,6 +119,32 @@ def test_an_error_meanwhile_leaves_the_scheduling_as_before_and_names_no_refusal
         raise UsageError("the port is in use")
     assert requests == [(os.SCHED_FIFO, 7), before][: 1 + granted]
     assert raised.value.__context__ is None
+
+
+@pytest.mark.parametrize("when", ["its name is read", "it is scheduled"])
+def test_a_thread_of_the_bus_that_ends_meanwhile_leaves_the_others_elevated(monkeypatch, when):
+    """The kernel knows no such process then; with a name that was opened before, too."""
+    ending, elevated = 7, []
+    threads = {6: "rx-0", ending: "tx-0", 8: "net-0"}
+
+    def ends(number):
+        if number == ending:
+            raise ProcessLookupError(errno.ESRCH, "No such process")
+
+    def name_of(path):
+        if when == "its name is read":
+            ends(int(path.parent.name))
+        return f"{threads[int(path.parent.name)]}\n"
+
+    def schedule(number, policy, parameters):
+        ends(number)
+        elevated.append(number)
+
+    monkeypatch.setattr(realtime.Path, "iterdir", lambda folder: iter([folder / str(number) for number in threads]))
+    monkeypatch.setattr(realtime.Path, "read_text", name_of)
+    monkeypatch.setattr(os, "sched_setscheduler", schedule)
+    assert realtime.elevate_bus_threads() == "fifo 40, 2 threads"
+    assert elevated == [6, 8]
 
 
 class Cycle:
