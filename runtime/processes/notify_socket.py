@@ -7,6 +7,7 @@ of the same user can report that it is ready or alive.
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import socket
 import struct
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 MAX_BYTES = 4096  # of a datagram; longer ones are cut
+MAX_PATH_BYTES = 107  # Linux: sun_path, without its final zero
 MAX_DATAGRAMS = 64  # per poll, also during a flood
 _CREDENTIALS = struct.Struct("3i")  # struct ucred: pid, uid, gid
 
@@ -32,8 +34,10 @@ class NotifySocket:
     """Socket of one child, in a folder that only this user can open."""
 
     def __init__(self, path: Path) -> None:
-        """Create and bind the socket; `path` is new and at most 107 bytes long, otherwise OSError is raised."""
+        """Create and bind the socket; `path` is new and at most MAX_PATH_BYTES long, otherwise OSError is raised."""
         self.path = path
+        if len(os.fsencode(path)) > MAX_PATH_BYTES:  # the system's own error would name no file, and have no reason
+            raise OSError(errno.ENAMETOOLONG, "too long for a socket, expected a shorter TMPDIR", str(path))
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
