@@ -9,6 +9,11 @@ from tailor.runtime.clock import Clock
 MAX_TEXT = 160  # characters of a fault
 
 
+def fault_text(text: str) -> str:
+    """A fault in one line that a driver's state can carry: whatever a device says, it is short, and text on the bus."""
+    return " ".join(text.split())[:MAX_TEXT].encode(errors="backslashreplace").decode()
+
+
 class Calls:
     """The calls that are being made, by name; at most one of each name at a time."""
 
@@ -22,8 +27,7 @@ class Calls:
         try:
             call()
         except BaseException as error:  # also SystemExit and asyncio's CancelledError: a writer must not end unseen
-            text = " ".join(f"{name}: {type(error).__name__}: {error}".split())
-            return text[:MAX_TEXT]
+            return fault_text(f"{name}: {type(error).__name__}: {_said_by(error)}")
         finally:
             self._begun_ns.pop(name, None)
         return ""
@@ -35,3 +39,11 @@ class Calls:
             if begun_ns is not None and now_ns - begun_ns > limit_s * 1e9:
                 return f"{name}: stalled for {limit_s:g} s"
         return ""
+
+
+def _said_by(error: BaseException) -> str:
+    """Text of an exception; a class of a device's library may fail to make one, and must not end a thread by it."""
+    try:
+        return str(error)
+    except Exception as failure:
+        return f"without a text, since its __str__ raises {type(failure).__name__}"

@@ -15,7 +15,7 @@ from enum import Enum
 from tailor.runtime.clock import Clock
 from tailor.schemas.messages import Message
 from tailor.simnodes.guard import Limit
-from tailor.simnodes.hardware.calls import Calls
+from tailor.simnodes.hardware.calls import Calls, fault_text
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
 
@@ -81,7 +81,7 @@ class Device:
     def fail(self, fault: str) -> None:
         """A watchdog of the loop found a fault."""
         if not self.fault:
-            self.fault = fault
+            self.fault = fault_text(fault)
         self._broken.set()
 
     def stalled(self, now_ns: int) -> str:

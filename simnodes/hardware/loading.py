@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import math
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -11,9 +10,11 @@ from types import ModuleType
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.package_errors import raised_text
+from tailor.schemas.parsed_files import shown
 from tailor.simnodes.hardware.interface import Hardware
 
-POSITIVE = ("write_hz", "open_s", "read_s", "write_s")  # of a Hardware
+NUMBERS = ("write_hz", "open_s", "read_s", "write_s")  # of a Hardware
+LEAST, MOST = 0.001, 1e6  # of them: beyond, a thread that computes or waits with one ends by an overflow
 
 
 def load_hardware(named: str) -> Hardware:
@@ -37,10 +38,10 @@ def load_hardware(named: str) -> Hardware:
         raise UsageError(f"{named}: {_cause(error)}, expected a class that is made without arguments") from error
     if not hardware.robot:
         raise UsageError(f"{named}: robot is empty, expected the name of the robot")
-    for name in POSITIVE:
+    for name in NUMBERS:
         value = getattr(hardware, name)
-        if not (isinstance(value, int | float) and math.isfinite(value) and value > 0.0):
-            raise UsageError(f"{named}: {name} is {value!r}, expected a finite number above 0")
+        if not (isinstance(value, int | float) and LEAST <= value <= MOST):
+            raise UsageError(f"{named}: {name} is {shown(value)}, expected a number from {LEAST:g} to {MOST:g}")
     return hardware
 
 

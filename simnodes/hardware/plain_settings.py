@@ -12,7 +12,7 @@ from tailor.schemas.parsed_files import read_toml
 from tailor.schemas.ros2.profiles import MAX_DOMAIN
 from tailor.schemas.settings import from_table
 
-MAX_RATE_HZ = 100.0  # of the driver's loop
+MIN_RATE_HZ, MAX_RATE_HZ = 0.1, 100.0  # the period of the least is a number; the driver's loop has the largest
 TOPIC = re.compile(r"/?[\w-]+(/[\w-]+)*", re.ASCII)  # zenoh opens no other key, and some are patterns
 
 
@@ -84,8 +84,8 @@ def _faults(settings: PlainSettings) -> list[str]:
     pose, topics = settings.pose, settings.topics
     faults = [] if settings.robot else ["robot is missing, expected the name of the robot in its package"]
     for name, value in (("rate_hz", settings.rate_hz), ("pose.rate_hz", pose.rate_hz)):
-        if not 0.0 < value <= MAX_RATE_HZ:
-            faults.append(f"{name} is {value:g}, expected more than 0 and at most {MAX_RATE_HZ:g}")
+        if not MIN_RATE_HZ <= value <= MAX_RATE_HZ:
+            faults.append(f"{name} is {value:g}, expected {MIN_RATE_HZ:g} to {MAX_RATE_HZ:g}")
     for name, value in (("pose.drift_per_m", pose.drift_per_m), ("pose.drift_per_rad", pose.drift_per_rad)):
         if not 0.0 <= value <= 1.0:
             faults.append(f"{name} is {value:g}, expected 0 to 1")

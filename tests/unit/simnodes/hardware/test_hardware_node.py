@@ -8,7 +8,8 @@ import threading
 import pytest
 
 from tailor.runtime.clock import MonotonicClock
-from tailor.schemas.messages import ArmRequest, EStop, Odometry, PoseEstimate, Sample, VelocityCommand
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.messages import ArmRequest, DriverState, EStop, Odometry, PoseEstimate, Sample, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
 from tailor.simnodes.guard import ArmRefusal, Limit
 from tailor.simnodes.hardware.device import Device
@@ -138,6 +139,40 @@ def test_no_exception_ends_the_writing_unseen(robot, error):
     driven.drive()
     driven.hardware.error, driven.hardware.raises = error, {"write"}
     stopped_for(driven, f"write: {error.__name__}: no write")
+
+
+class Mute(Exception):
+    """Of a library whose exceptions cannot be printed."""
+
+    def __str__(self):
+        return self.text
+
+
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [
+        (lambda _: OSError("no port /dev/tty\udcff"), r"read: OSError: no port /dev/tty\udcff"),
+        (lambda _: Mute(), "read: Mute: without a text, since its __str__ raises AttributeError"),
+        (lambda _: OSError("x" * 10_000), "read: OSError: xxx"),
+    ],
+)
+def test_whatever_a_fault_says_the_driver_reports_it_and_goes_on(robot, error, reason):
+    """A name of a file that is no UTF-8 ended the driver: no bus carries it."""
+    driven = robot()
+    driven.drive()
+    driven.hardware.error, driven.hardware.raises = error, {"read"}
+    stopped_for(driven, reason)
+    assert isinstance(decode(DriverState, encode(driven.state())), DriverState), "others can read it"
+    driven.hardware.raises = set()
+    driven.drive()
+
+
+def test_a_measurement_whose_error_is_long_is_a_fault_that_others_can_read(robot):
+    driven = robot()
+    driven.drive()
+    driven.hardware.odometry = {"x" * 10_000: Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)}
+    stopped_for(driven, "read: 'xxx")
+    assert isinstance(decode(DriverState, encode(driven.state())), DriverState)
 
 
 def test_standstill_is_written_while_a_read_stalls_and_close_ends_the_read(robot):

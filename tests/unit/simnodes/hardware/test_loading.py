@@ -15,8 +15,10 @@ WRONG = {
     "Rover": r"^Rover: expected FILE\.toml, package\.module:Class or FILE\.py:Class$",
     ":Rover": "expected FILE",
     "tailor.simnodes.hardware.interface:Hardware": "robot is empty",
-    f"{__name__}:NeverWriting": r"write_hz is 0\.0, expected a finite number above 0",
-    f"{__name__}:WritingFast": r"write_hz is 'fast', expected a finite number above 0",
+    f"{__name__}:NeverWriting": r"write_hz is 0\.0, expected a number from 0\.001 to 1e\+06",
+    f"{__name__}:WritingFast": r"write_hz is 'fast', expected a number from 0\.001 to 1e\+06",
+    f"{__name__}:HardlyWriting": r"write_hz is 1e-310, expected a number from 0\.001 to 1e\+06",
+    f"{__name__}:Patient": r"read_s is 10+\.\.\., expected a number from 0\.001 to 1e\+06",
     f"{__name__}:Unplugged": r"RuntimeError: no board, on no port \(test_loading\.py, line \d+\), expected a class",
     ".relative:Rover": "expected package.module:Class or FILE.py:Class",
 }
@@ -31,6 +33,20 @@ class NeverWriting(Faulty):
     """Its writer would divide by zero."""
 
     write_hz = 0.0
+
+
+class HardlyWriting(Faulty):
+    """Its period overflows: the thread that writes would end, and nothing would be written, standstill neither."""
+
+    write_hz = 1e-310
+
+
+class Patient(Faulty):
+    """No thread can wait for so long; the one that closes the device would end by it."""
+
+    def __init__(self):
+        super().__init__()
+        self.read_s = 10**400
 
 
 class WritingFast(Faulty):

@@ -10,7 +10,10 @@ from tailor.simnodes.hardware.plain_settings import RobotBus, read_plain_setting
 
 WRONG = {
     "": "robot is missing",
-    'robot = "r"\nrate_hz = 500': "rate_hz is 500, expected more than 0 and at most 100",
+    'robot = "r"\nrate_hz = 500': "rate_hz is 500, expected 0.1 to 100",
+    'robot = "r"\nrate_hz = 1e-310': "rate_hz is 1e-310, expected 0.1 to 100",
+    'robot = "r"\nrate_hz = nan': "rate_hz is nan, expected 0.1 to 100",
+    'robot = "r"\n[pose]\nrate_hz = 0': "pose.rate_hz is 0, expected 0.1 to 100",
     'robot = "r"\ncommand = "joy"': "'command' is 'joy', expected one of: twist, twist_stamped",
     'robot = "r"\n[topic]\nodom = "o"': "unknown key 'topic'",
     'robot = "r"\n[topics]\npose = ""': "expected a localiser, or pose.start",
