@@ -114,6 +114,8 @@ def _axis_names(command: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _sensor(name: str, table: Mapping[str, Any]) -> SensorSpec:
     rate_hz = finite_number(table, "rate_hz") if "rate_hz" in table else 0.0
+    if "rate_hz" in table and rate_hz <= 0.0:  # 0 would count as not declared, and give the sensor its topic's rate
+        raise ValueError(f"{name}: rate_hz is {rate_hz:g}, expected more than 0; without it the topic's rate holds")
     return SensorSpec(name, rate_hz, text(table, "frame") if "frame" in table else "")
 
 
