@@ -16,6 +16,7 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
+from tailor.schemas.messages import DriverState
 from tailor.tools.cli.output_files import check_output, check_writable, whole_output
 from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
 from tailor.tools.conformance import report as reports
@@ -30,6 +31,7 @@ from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.lockstep.worlds import make_world
 
 MAX_FRACTION = 0.3  # of the limits, for all but the fit at top speed
+LISTEN_S = 0.5  # for other drivers, which publish at 10 Hz
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -130,8 +132,9 @@ def _fit(bench: Bench, fraction: float) -> tuple[list[Response], list[Response]]
 
 
 def _is_simulator(people: Session, robot: str) -> bool:
-    accepted, answer = people.call(f"{robot}/sim/step", "0", timeout_s=1.0)
-    return accepted or "no service" not in answer
+    """Whether a simulator refuses a step of none; whatever else answers, or does not in time, may be hardware."""
+    _, answer = people.call(f"{robot}/sim/step", "0", timeout_s=1.0)
+    return answer.startswith("step: ")
 
 
 def _confirm(robot: str, agreed: bool) -> None:
@@ -142,17 +145,28 @@ def _confirm(robot: str, agreed: bool) -> None:
     """
     if agreed:
         return
-    if not sys.stdin.isatty():
+    if sys.stdin is None or not sys.stdin.isatty():
         raise UsageError(f"{robot} is hardware that will move, expected --yes or a terminal to confirm")
     print(
         f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped three "
         "times."
     )
-    if input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ").strip() != robot:
+    try:
+        typed = input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ")
+    except EOFError:  # Ctrl-D
+        typed = ""
+    if typed.strip() != robot:
         raise UsageError("not confirmed, so nothing was moved")
 
 
 def _check_free(bench: Bench, robot: str) -> None:
+    """Raise UsageError unless one driver is heard, and nobody uses it.
+
+    A forgotten simulator beside hardware would pass for the only driver, and the hardware would move unasked.
+    """
+    bench.wait(LISTEN_S)
+    if len({each.message.epoch for each in bench.heard("driver") if isinstance(each.message, DriverState)}) > 1:
+        raise UsageError(f"several drivers of {robot} are on the bus, or one has just started anew; expected one")
     try:
         state = bench.state()
     except NotPossible as error:
