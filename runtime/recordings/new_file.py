@@ -1,4 +1,4 @@
-"""Guard of a file that is being made: whole in the end, or gone."""
+"""Files that are to be new: whether one can be made, and a guard while it is: whole in the end, or gone."""
 
 from __future__ import annotations
 
@@ -8,7 +8,30 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 
+PROBE_BYTES = 65_536  # there must be room for: a second of a run
 EXISTS = "{}: exists already, expected the name of a new file"
+
+
+def check_new_file(path: Path) -> None:
+    """Make the folder of a file, and check that the file can be made there: before a run begins, of which it is.
+
+    Raises:
+      UsageError: It exists, or cannot be made.
+    """
+    if path.exists():
+        raise UsageError(EXISTS.format(path))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("xb") as file:
+            try:
+                file.write(bytes(PROBE_BYTES))
+                file.flush()
+            finally:
+                path.unlink()
+    except FileExistsError as error:  # also a file in the place of the folder
+        raise UsageError(EXISTS.format(error.filename or path)) from error
+    except OSError as error:
+        raise UsageError(f"{path}: {error.strerror}, expected a file that can be written") from error
 
 
 @contextmanager

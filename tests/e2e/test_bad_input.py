@@ -142,15 +142,11 @@ def test_a_recording_that_exists_is_refused_before_anything_starts(tmp_path):
     assert "run.mcap: exists already" in refused("up", "soccer", "--record", tmp_path / "run.mcap")
 
 
-@pytest.mark.xdist_group("systems")
-def test_a_system_whose_recorder_cannot_start_does_not_run_without_it(tmp_path):
+@pytest.mark.parametrize("place", ["file/run.mcap", "/proc/run.mcap"])
+def test_a_recording_that_cannot_be_written_is_refused_before_anything_starts(tmp_path, place):
     (tmp_path / "file").write_text("no folder")
-    flags = ("--record", tmp_path / "file" / "run.mcap", "--connect", free_endpoint())
-    done = subprocess.run(
-        tailor("up", "soccer", *map(str, flags)), capture_output=True, text=True, timeout=60, cwd=ROOT
-    )
-    assert (done.returncode, done.stdout.splitlines()[-1]) == (1, "failed: the recorder did not start")
-    assert "record ended with 2; not started again" in done.stdout
+    flags = ("--record", tmp_path / place, "--connect", free_endpoint())
+    assert str((tmp_path / place).parent) in refused("up", "soccer", *flags)
 
 
 @pytest.fixture

@@ -15,9 +15,8 @@ from tailor.runtime.loop import Loop
 from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.supervised import ProcessSpec, State
 from tailor.runtime.processes.supervisor import Supervisor
-from tailor.runtime.recordings.new_file import EXISTS
+from tailor.runtime.recordings.new_file import check_new_file
 from tailor.runtime.stopping import Stop
-from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text, result_text
@@ -51,9 +50,9 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
     Raises:
       UsageError: Bad configuration; no process has been started.
     """
-    if config.record is not None and config.record.exists():
-        raise UsageError(EXISTS.format(config.record))
     check_models(build_context(config.executive, sender=""))  # both report all that is wrong with it
+    if config.record is not None:
+        check_new_file(config.record)
     with (
         hosted_bus(config.bus, screen.report) as session,
         tempfile.TemporaryFile("w+") as printed,

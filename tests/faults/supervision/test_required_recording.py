@@ -11,12 +11,20 @@ from contextlib import contextmanager
 
 import pytest
 
-from tailor.runtime.processes.child import Child, tailor
+from tailor.runtime.processes.child import Child
 from tests.faults.supervision.launched import launched
 from tests.support.bus_system import ROOT, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 
 BURNERS = 4
+# The launcher looks whether it can write the file before it starts anything; here that is lost in between.
+LATER = """
+import sys
+from tailor.tools.launch import system
+from tailor.tools.main import main
+system.check_new_file = lambda path: None
+sys.exit(main(sys.argv[1:]))
+"""
 
 
 @contextmanager
@@ -39,7 +47,18 @@ def test_nothing_moves_when_its_recording_cannot_be_written(tries, load, place, 
     with burners(load):
         for _ in range(tries):
             time.sleep(phases.uniform(0.0, 0.2))
-            command = tailor("up", "soccer", "--record", path, "--connect", free_endpoint())
+            command = [
+                sys.executable,
+                "-P",
+                "-c",
+                LATER,
+                "up",
+                "soccer",
+                "--record",
+                path,
+                "--connect",
+                free_endpoint(),
+            ]
             done = subprocess.run(command, capture_output=True, text=True, timeout=2 * PATIENCE_S, cwd=ROOT)
             lines = done.stdout.splitlines()
             assert done.returncode == 1

@@ -1,12 +1,13 @@
 """Files that tools make from recordings are whole or absent, so that a second attempt finds their name free."""
 
 import errno
+import resource
 
 import pytest
 
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.mcap import sink, writer
-from tailor.runtime.recordings.new_file import new_file
+from tailor.runtime.recordings.new_file import check_new_file, new_file
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.look import verify
@@ -99,3 +100,34 @@ def test_outputs_of_a_run_that_cannot_be_verified_leave_no_file(tmp_path, capsys
         assert main(["verify", str(GOLDEN), "-o", str(target)]) == 2
         assert "tick 7 is missing" in capsys.readouterr().err
         assert not target.exists()
+
+
+def test_a_file_that_can_be_made_is_not_made_yet_but_its_folder_is(tmp_path):
+    check_new_file(tmp_path / "runs" / "b.mcap")
+    assert list(tmp_path.rglob("*")) == [tmp_path / "runs"]
+
+
+@pytest.mark.parametrize(
+    ("place", "reason"),
+    [
+        ("taken", "taken: exists already"),
+        ("taken/b.mcap", "taken: exists already"),
+        ("/proc/b.mcap", "expected a file"),
+    ],
+)
+def test_a_file_that_cannot_be_made_is_refused(tmp_path, place, reason):
+    (tmp_path / "taken").write_text("mine")
+    with pytest.raises(UsageError, match=reason):
+        check_new_file(tmp_path / place)
+    assert (tmp_path / "taken").read_text() == "mine"
+
+
+def test_a_file_for_which_there_is_no_room_is_refused_and_removed(tmp_path):
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with pytest.raises(UsageError, match=r"b\.mcap: File too large, expected a file that can be written"):
+            check_new_file(tmp_path / "b.mcap")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(tmp_path.iterdir()) == []
