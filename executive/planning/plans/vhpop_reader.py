@@ -14,6 +14,7 @@ from tailor.schemas.errors import UsageError
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
 MAX_STEPS = 200  # as many as our own plans may have
+NANOSECOND_S = 1e-9  # times are whole nanoseconds
 MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
@@ -98,7 +99,7 @@ def _read_line(line: str, draft: _Draft) -> None:
         draft.part = "orderings"
         draft.orderings += [(_whole(i), _whole(j)) for i, j in _PAIR.findall(stripped)]
     elif stripped.startswith("tolerance"):
-        draft.tick_s = _number(stripped.partition("=")[2].strip())
+        draft.tick_s = _tick(stripped.partition("=")[2].strip())
     elif stripped.startswith("bindings"):
         draft.part = "bindings"
     elif draft.part == "bindings":
@@ -148,6 +149,13 @@ def _number(text: str) -> float:
     return value
 
 
+def _tick(text: str) -> float:
+    tick_s = _number(text)
+    if tick_s < NANOSECOND_S:
+        raise ValueError(f"expected a tick of at least {NANOSECOND_S:g} s, found '{text}'")
+    return tick_s
+
+
 def _check_length(text: str) -> None:
     if len(text.partition(".")[0].lstrip("-")) > MAX_DIGITS:
         raise ValueError(f"a number of more than {MAX_DIGITS} digits: {text[:20]}...")
@@ -172,9 +180,10 @@ def _literal(text: str) -> Literal:
 # --- the plain form ------------------------------------------------------------------------------
 def _from_plain(draft: _Draft) -> Plan:
     """The plan; where some steps have a duration, those without take no time."""
-    if len(draft.instant) == len(draft.plain):
-        return Plan(draft.problem, (), tuple(draft.plain))
-    steps = tuple(replace(step, duration=0.0) if step.id in draft.instant else step for step in draft.plain)
+    ordered = sorted(draft.plain, key=lambda step: step.start)  # a planner may print them in any order
+    if len(draft.instant) == len(ordered):
+        return Plan(draft.problem, (), tuple(ordered))
+    steps = tuple(replace(step, duration=0.0) if step.id in draft.instant else step for step in ordered)
     tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS))
     return Plan(draft.problem, (), steps, durative=True, tick_s=tick_s)
 

@@ -35,7 +35,7 @@ def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
 def completion(plan: Plan, domain: Domain, problem: Problem) -> Work[Plan | str]:
     """`completed` in portions."""
     objects = Objects(problem)
-    located = replace(plan, problem=problem.name, initial=problem.initial)
+    located = _located(plan, domain, problem)
     fault = yield from validation(located, domain, objects)
     if fault:
         return fault
@@ -44,13 +44,27 @@ def completion(plan: Plan, domain: Domain, problem: Problem) -> Work[Plan | str]
     absent = [link for link in needed if (link.literal, link.consumer) not in supported]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
-    if any(link.literal.fact[0] in changing for link in absent):
+    if located.steps != plan.steps or any(link.literal.fact[0] in changing for link in absent):
         linked = yield from relinking(located, domain, objects)
     else:
         linked = replace(located, links=_by_consumer(located, (*absent, *plan.links)))
     if linked is None:
         return "its steps cannot be linked"
     return linked if linked.bounds else replace(linked, bounds=scheduled_bounds(linked))
+
+
+def _located(plan: Plan, domain: Domain, problem: Problem) -> Plan:
+    """The plan as one of the problem.
+
+    An instantaneous action takes no time, whatever the other planner prints: then its orderings are not those printed.
+    Beside timed literals a plan of such actions has times, though none of durations.
+    """
+    instant = {action.name for action in domain.actions if action.duration is None}
+    durative = plan.durative or (bool(problem.timed) and all(step.action[0] in instant for step in plan.steps))
+    timeless = instant if durative else set[str]()
+    steps = tuple(replace(step, duration=0.0) if step.action[0] in timeless else step for step in plan.steps)
+    plan = replace(plan, problem=problem.name, initial=problem.initial, durative=durative)
+    return plan if steps == plan.steps else replace(plan, steps=steps, links=(), orderings=(), bounds=())
 
 
 def _by_consumer(plan: Plan, links: tuple[Link, ...]) -> tuple[Link, ...]:

@@ -16,7 +16,7 @@ SAME_TIME_S = 1e-6  # events closer than this, or than half a tick, happen toget
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """The start or end of a step, a whole step without duration, or a timed literal."""
+    """The start or end of a step, or a timed literal; a step without duration happens as a whole at its start."""
 
     time: float
     rank: int  # order of simultaneous events: ends first
@@ -36,7 +36,7 @@ def happenings(plan: Plan, timed: Sequence[TimedLiteral]) -> Iterator[list[Event
     if plan.durative:
         yield from _grouped([*literals, *_ends(plan)], min(SAME_TIME_S, plan.tick_s / 2))
     else:
-        steps = (_event(step, step.start, ends=True) for step in sorted(plan.steps, key=lambda step: step.start))
+        steps = (_event(step, step.start, ends=False) for step in sorted(plan.steps, key=lambda step: step.start))
         yield from ([event] for event in merge(literals, steps, key=lambda event: event.time))
 
 

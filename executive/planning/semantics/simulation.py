@@ -114,16 +114,14 @@ def simulate(plan: Plan, domain: Domain, objects: Objects) -> Work[list[Event]]:
 
 def _moments(plan: Plan, schemata: Mapping[str, Action], problem: Problem) -> list[_Moment]:
     whole: tuple[When, ...] = ("start", "over", "end")
-    if not plan.durative:
-        return [_Moment(float(n), 0, step.id, whole) for n, step in enumerate(plan.steps)]
     moments = [_Moment(t.time_s, 0, 0, (), t.literal) for t in problem.timed]
     for step in plan.steps:
-        if schemata[step.action[0]].duration is None:
+        if not plan.durative or schemata[step.action[0]].duration is None:
             moments.append(_Moment(step.start, 1, step.id, whole))
         else:
             moments.append(_Moment(step.start, 1, step.id, ("start", "over")))
             moments.append(_Moment(step.start + step.duration, 0 if step.duration else 2, step.id, ("end",)))
-    return sorted(moments, key=lambda moment: (round(moment.time, 8), moment.rank))
+    return sorted(moments, key=lambda moment: (moment.time, moment.rank))  # as the validator has them
 
 
 def _formulas(action: Action, moments: Collection[When]) -> list[Formula]:

@@ -73,9 +73,9 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
 
 
 def _moments(event: Event, action: Action) -> tuple[str, ...]:
-    """The moments of its action that an event covers."""
+    """The moments of its action that an event covers; an instantaneous action happens at its start alone."""
     if action.duration is None:
-        return ("start", "end") if event.ends else ()
+        return () if event.ends else ("start", "end")
     return ("end",) if event.ends else ("start",)
 
 
