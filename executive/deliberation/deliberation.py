@@ -62,6 +62,7 @@ class Deliberation:
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._found: PlanFound | None = None  # whose plan is being compared
         self._plan_choice: PlanChoice | None = None  # between the source's plan and others
+        self._check: planning.PacedWork[str] | None = None  # of the plan chosen
         self._pattern: Pattern | None = None
         self._watch: BeliefMonitor | None = None
         self._assertion: Assertion | None = None
@@ -123,13 +124,18 @@ class Deliberation:
             if self._context.settings.plan_costs == "models" and self._found.way == "searched" and self._found.plan:
                 self._plan_choice = self._choice_from(self._found.plan)
         choice = self._plan_choice
-        if choice is not None and not choice.advance(budget):
+        if choice is not None and self._check is None and not choice.advance(budget):
             return None
-        found, self._found, self._plan_choice = self._found, None, None
-        if choice is None or found.plan is choice.best:
-            return found
-        fault = planning.validate(choice.best, self._context.pddl_domain, self.source.problem)
-        return found if fault else replace(found, plan=choice.best)
+        found = self._found
+        if choice is not None and found.plan is not choice.best:
+            if self._check is None:
+                objects = planning.Objects(self.source.problem)
+                self._check = planning.PacedWork(planning.validation(choice.best, self._context.pddl_domain, objects))
+            if not self._check.advance(budget):
+                return None
+            found = found if self._check.result else replace(found, plan=choice.best)
+        self._found, self._plan_choice, self._check = None, None, None
+        return found
 
     def _choice_from(self, first: planning.Plan) -> PlanChoice:
         context, source = self._context, self.source

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_text import format_atom
-from tailor.executive.planning.pddl.language import Action, Literal
+from tailor.executive.planning.pddl.language import Action, Effect, Literal
 from tailor.executive.planning.plans.plan import Plan, Step
+from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.semantics.action_effects import affected
 from tailor.executive.planning.semantics.regression import NotClassical, conjunction
 from tailor.executive.planning.semantics.state import Binding, Objects, State, holds
@@ -34,7 +35,7 @@ class GroundStep:
         added: set[Fact] = set()
         removed: set[Fact] = set()
         for effect in self.action.effects:
-            (added if effect.positive else removed).update(affected(effect, self.binding, state, objects))
+            (added if effect.positive else removed).update(self._affected(effect, state, objects))
         return (state - removed) | added
 
     def conditions(self) -> list[Literal | None]:
@@ -56,8 +57,11 @@ class GroundStep:
             raise NotClassical
         made: dict[Fact, bool] = {}
         for effect in sorted(self.action.effects, key=lambda effect: effect.positive):  # add effects win
-            made.update((fact, effect.positive) for fact in affected(effect, self.binding, objects.initial, objects))
+            made.update((fact, effect.positive) for fact in self._affected(effect, objects.initial, objects))
         return [Literal(fact, positive) for fact, positive in made.items()]
+
+    def _affected(self, effect: Effect, state: State, objects: Objects) -> list[Fact]:
+        return completed_work(affected(effect, self.binding, state, objects))
 
 
 def predecessors(plan: Plan) -> list[int] | None:

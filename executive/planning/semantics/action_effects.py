@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Domain, Effect
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of, holds
+from tailor.executive.planning.plans.portions import Work, completed_work
+from tailor.executive.planning.semantics.large_formulas import holding
+from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
 
 
 def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
@@ -28,19 +28,28 @@ def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], actio
     added: set[Fact] = set()
     removed: set[Fact] = set()
     for effect in schema.effects:
-        changed = affected(effect, binding, facts, Objects(problem))
+        changed = completed_work(affected(effect, binding, facts, Objects(problem)))
         (added if effect.positive else removed).update(changed)
     return (facts - removed) | added
 
 
 def affected(
     effect: Effect, binding: Binding, state: State, objects: Objects, began: State | None = None
-) -> Iterator[Fact]:
+) -> Work[list[Fact]]:
     """The facts that an effect makes true or false in a state.
 
     Its conditions at start are evaluated in `began`, the state before the action, if given. It has none over all.
     """
+    facts: list[Fact] = []
     before = state if began is None else began
-    for inner in objects.bindings(effect.variables, binding):
-        if all(holds(c.formula, inner, before if c.when == "start" else state, objects) for c in effect.condition):
-            yield fact_of(effect.atom, inner)
+    for inner in objects.paced_bindings(effect.variables, binding):
+        if inner is None:
+            yield
+            continue
+        for condition in effect.condition:
+            then = before if condition.when == "start" else state
+            if not (yield from holding(condition.formula, inner, then, objects)):
+                break
+        else:
+            facts.append(fact_of(effect.atom, inner))
+    return facts

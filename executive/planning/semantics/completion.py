@@ -10,7 +10,7 @@ from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.schedule import scheduled_bounds
 from tailor.executive.planning.semantics.links import linking
-from tailor.executive.planning.semantics.state import Objects
+from tailor.executive.planning.semantics.state import MAX_PARTS, Objects, TooLargeError
 from tailor.executive.planning.semantics.suffix import relinking
 from tailor.executive.planning.semantics.validator import validation
 
@@ -34,7 +34,14 @@ def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
 
 def completion(plan: Plan, domain: Domain, problem: Problem) -> Work[Plan | str]:
     """`completed` in portions."""
-    objects = Objects(problem)
+    try:
+        return (yield from _completion(plan, domain, Objects(problem, MAX_PARTS)))
+    except TooLargeError as reason:
+        return str(reason)
+
+
+def _completion(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | str]:
+    problem = objects.problem
     located = _located(plan, domain, problem)
     fault = yield from validation(located, domain, objects)
     if fault:

@@ -53,8 +53,10 @@ def _any_reads(
 
 def _reads(formula: Formula, terms: Terms, facts: frozenset[Fact], objects: Objects) -> bool:
     match formula:
-        case Atom():
-            return any(_names(formula, terms, fact, objects) for fact in facts)
+        case Atom(predicate, own):
+            if any(isinstance(terms.get(term), Typed) for term in own):
+                return any(names(formula, terms, fact, objects) for fact in facts)
+            return (predicate, *(terms.get(term, term) for term in own)) in facts  # of an effect there may be many
         case Equal():
             return False
         case Not(part):
@@ -66,7 +68,7 @@ def _reads(formula: Formula, terms: Terms, facts: frozenset[Fact], objects: Obje
             return all(objects.of(v) for v in variables) and _reads(part, inner, facts, objects)
 
 
-def _names(atom: Atom, terms: Terms, fact: Fact, objects: Objects) -> bool:
+def names(atom: Atom, terms: Terms, fact: Fact, objects: Objects) -> bool:
     """Whether a fact is the atom for some choice of the variables that stand for several objects."""
     if atom.predicate != fact[0]:
         return False

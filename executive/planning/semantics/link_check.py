@@ -6,7 +6,8 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, Effect
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.semantics.state import Binding, Objects, fact_of
+from tailor.executive.planning.semantics.interference import names
+from tailor.executive.planning.semantics.state import Binding, Objects
 
 LINKS = 16  # as much work as the simulation of one step
 Bound = dict[int, tuple[Action, Binding]]  # schema and binding of each step
@@ -48,6 +49,7 @@ def _is_own(link: Link, bound: Bound) -> bool:
 
 
 def _touches(effect: Effect, binding: Binding, fact: Fact, objects: Objects) -> bool:
-    if effect.atom.predicate != fact[0]:
+    """Whether the effect is that fact for some of its objects: found without trying all, of which there may be many."""
+    if len(effect.atom.terms) != len(fact) - 1 or not all(objects.of(variable) for variable in effect.variables):
         return False
-    return any(fact_of(effect.atom, inner) == fact for inner in objects.bindings(effect.variables, binding))
+    return names(effect.atom, {**binding, **{v.name: v for v in effect.variables}}, fact, objects)

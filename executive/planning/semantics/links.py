@@ -66,7 +66,7 @@ def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, objects: 
     order = {0: -1, GOAL: len(plan.steps), **{step.id: n for n, step in enumerate(plan.steps)}}
     undoing: dict[Literal, list[int]] = {}
     for step in plan.steps:
-        for literal in _undone(step, domain, objects):
+        for literal in (yield from _undone(step, domain, objects)):
             undoing.setdefault(literal, []).append(step.id)
     yield
     for link in links:
@@ -81,12 +81,15 @@ def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, objects: 
     return pairs
 
 
-def _undone(step: Step, domain: Domain, objects: Objects) -> frozenset[Literal]:
+def _undone(step: Step, domain: Domain, objects: Objects) -> Work[set[Literal]]:
     """The literals that a step may make false."""
     action = next(action for action in domain.actions if action.name == step.action[0])
     binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
-    return frozenset(
-        Literal(fact_of(effect.atom, inner), not effect.positive)
-        for effect in action.effects
-        for inner in objects.bindings(effect.variables, binding)
-    )
+    undone: set[Literal] = set()
+    for effect in action.effects:
+        for inner in objects.paced_bindings(effect.variables, binding):
+            if inner is None:
+                yield
+            else:
+                undone.add(Literal(fact_of(effect.atom, inner), not effect.positive))
+    return undone

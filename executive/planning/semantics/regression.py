@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Action, And, Atom, Domain, Equal, Formula, Literal, Not
 from tailor.executive.planning.plans.plan import GOAL, Step
+from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.semantics.state import Binding, Objects, fact_of
 
 
@@ -52,7 +53,7 @@ class Regression:
         """Whether all that is needed holds now; True where regression does not apply."""
         return not self._applies or (self._consistent and not self._unmet)
 
-    def add(self, step: Step) -> None:
+    def add(self, step: Step) -> Work[None]:
         """Regress through one more step, which comes before the earlier ones."""
         action = self._schemata.get(step.action[0])
         if action is None or len(action.parameters) != len(step.action) - 1 or action.duration is not None:
@@ -62,15 +63,18 @@ class Regression:
         if any(effect.condition for effect in action.effects):
             self._applies = False
             return
-        self._undo(action, binding)
+        yield from self._undo(action, binding)
         self._attempt(step.id, (condition.formula for condition in action.conditions), binding)
 
-    def _undo(self, action: Action, binding: Binding) -> None:
+    def _undo(self, action: Action, binding: Binding) -> Work[None]:
         """Remove what the action makes true; what it makes false can no longer be had."""
         made: dict[Fact, bool] = {}
         for effect in sorted(action.effects, key=lambda effect: effect.positive):  # add effects win
-            for inner in self._objects.bindings(effect.variables, binding):
-                made[fact_of(effect.atom, inner)] = effect.positive
+            for inner in self._objects.paced_bindings(effect.variables, binding):
+                if inner is None:
+                    yield
+                else:
+                    made[fact_of(effect.atom, inner)] = effect.positive
         for fact, positive in made.items():
             self._drop(Literal(fact, positive))
             self._consistent &= Literal(fact, not positive) not in self._needed

@@ -12,7 +12,8 @@ from tailor.executive.planning.pddl.language import Action, Domain, Effect, Form
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Plan
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of, holds, support
+from tailor.executive.planning.semantics.large_formulas import holding, supporting
+from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +56,16 @@ class _World:
     state: State
     sources: dict[Literal, Source] = field(default_factory=dict)
 
-    def requirements(self, formulas: Iterable[Formula], binding: Binding) -> tuple[Requirement, ...]:
+    def requirements(self, formulas: Iterable[Formula], binding: Binding) -> Work[tuple[Requirement, ...]]:
         """The literals that make the (true) formulas hold, each once."""
-        literals = (x for formula in formulas for x in support(formula, binding, self.state, self.objects))
-        return tuple(Requirement(literal, self.sources.get(literal, START)) for literal in dict.fromkeys(literals))
+        literals: dict[Literal, None] = {}
+        for formula in formulas:
+            literals.update(dict.fromkeys((yield from supporting(formula, binding, self.state, self.objects))))
+        return tuple(Requirement(literal, self.sources.get(literal, START)) for literal in literals)
 
-    def holds(self, formula: Formula, binding: Binding) -> bool:
+    def holds(self, formula: Formula, binding: Binding) -> Work[bool]:
         """Whether a formula holds in this state."""
-        return holds(formula, binding, self.state, self.objects)
+        return holding(formula, binding, self.state, self.objects)
 
     def changed(self, achieved: Mapping[Literal, Source]) -> _World:
         """The world after an event."""
@@ -99,17 +102,19 @@ def simulate(plan: Plan, domain: Domain, objects: Objects) -> Work[list[Event]]:
         action = schemata[step.action[0]]
         binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
         before = began.setdefault(step.id, world)
-        achieved, prevented = _effects(action, binding, moment, position, before, world)
-        requirements = world.requirements(
-            _formulas(action, [when for when in moment.moments if when != "over"]), binding
-        )
+        achieved, prevented = yield from _effects(action, binding, moment, position, before, world)
+        met = _formulas(action, [when for when in moment.moments if when != "over"])
+        requirements = yield from world.requirements(met, binding)
         world = world.changed(achieved)
         if "over" in moment.moments:
-            lasting = _formulas(action, ["over"])  # of a step that takes no time they may fail
-            requirements += world.requirements([f for f in lasting if world.holds(f, binding)], binding)
+            lasting = []
+            for formula in _formulas(action, ["over"]):  # of a step that takes no time they may fail
+                if (yield from world.holds(formula, binding)):
+                    lasting.append(formula)
+            requirements += yield from world.requirements(lasting, binding)
         events.append(Event(step.id, requirements, prevented))
         yield
-    return [*events, Event(GOAL, world.requirements([problem.goal], {}), {})]
+    return [*events, Event(GOAL, (yield from world.requirements([problem.goal], {})), {})]
 
 
 def _moments(plan: Plan, schemata: Mapping[str, Action], problem: Problem) -> list[_Moment]:
@@ -130,7 +135,7 @@ def _formulas(action: Action, moments: Collection[When]) -> list[Formula]:
 
 def _effects(
     action: Action, binding: Binding, moment: _Moment, position: int, before: _World, now: _World
-) -> tuple[dict[Literal, Source], dict[Literal, tuple[Requirement, ...]]]:
+) -> Work[tuple[dict[Literal, Source], dict[Literal, tuple[Requirement, ...]]]]:
     """The literals that an event makes true (adds before deletes) with their sources, and those it prevents.
 
     Args:
@@ -146,26 +151,35 @@ def _effects(
     for effect in sorted(action.effects, key=lambda effect: not effect.positive):
         if effect.when not in moment.moments:
             continue
-        for inner in now.objects.bindings(effect.variables, binding):
+        for inner in now.objects.paced_bindings(effect.variables, binding):
+            if inner is None:
+                yield
+                continue
             literal = Literal(fact_of(effect.atom, inner), effect.positive)
-            failing = _failing_condition(effect, inner, before, now)
+            failing = yield from _failing_condition(effect, inner, before, now)
             if failing is not None:
                 prevented[literal] = prevented.get(literal, ()) + failing
-            elif effect.positive or Literal(literal.fact) not in achieved:
-                achieved.setdefault(literal, Source(moment.step, position, _conditions(effect, inner, before, now)))
+            elif literal not in achieved and (effect.positive or Literal(literal.fact) not in achieved):
+                conditions = yield from _conditions(effect, inner, before, now)
+                achieved[literal] = Source(moment.step, position, conditions)
     return achieved, prevented
 
 
-def _failing_condition(effect: Effect, binding: Binding, before: _World, now: _World) -> tuple[Requirement, ...] | None:
+def _failing_condition(
+    effect: Effect, binding: Binding, before: _World, now: _World
+) -> Work[tuple[Requirement, ...] | None]:
     """Requirements of the negation of an effect's first failing condition; None if all conditions hold."""
     for condition in effect.condition:
         world = before if condition.when == "start" else now
-        if not world.holds(condition.formula, binding):
-            return world.requirements([Not(condition.formula)], binding)
+        if not (yield from world.holds(condition.formula, binding)):
+            return (yield from world.requirements([Not(condition.formula)], binding))
     return None
 
 
-def _conditions(effect: Effect, binding: Binding, before: _World, now: _World) -> tuple[Requirement, ...]:
+def _conditions(effect: Effect, binding: Binding, before: _World, now: _World) -> Work[tuple[Requirement, ...]]:
     """Requirements of the conditions of a conditional effect that happens."""
-    worlds = [(condition, before if condition.when == "start" else now) for condition in effect.condition]
-    return tuple(r for condition, world in worlds for r in world.requirements([condition.formula], binding))
+    found: tuple[Requirement, ...] = ()
+    for condition in effect.condition:
+        world = before if condition.when == "start" else now
+        found += yield from world.requirements([condition.formula], binding)
+    return found

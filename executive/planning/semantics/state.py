@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -24,15 +26,28 @@ from tailor.executive.planning.pddl.problem import Problem
 
 Binding = Mapping[str, str]
 State = frozenset[Fact]
+PORTION_PARTS = 128  # parts of formulas, or objects tried, in one portion: an eighth of a millisecond
+
+
+MAX_PARTS = 2_000_000  # of a plan that is to be executed: a few seconds, spread over ticks
+
+
+class TooLargeError(Exception):
+    """The formulas of a plan range over too many objects to be checked."""
 
 
 @dataclass(frozen=True, slots=True)
 class Objects:
-    """The objects of a problem, by type, and its initial state."""
+    """The objects of a problem, by type, and its initial state.
+
+    `most_parts` limits the work on large formulas, which `spend` counts in their parts.
+    """
 
     problem: Problem
+    most_parts: float = math.inf
     initial: State = field(init=False, compare=False, repr=False)
     found: dict[tuple[str, ...], dict[str, None]] = field(default_factory=dict, compare=False, repr=False)
+    spent: Counter[str] = field(default_factory=Counter, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "initial", frozenset(self.problem.initial))
@@ -56,6 +71,28 @@ class Objects:
         names = [variable.name for variable in variables]
         for objects in itertools.product(*(self.of(variable) for variable in variables)):
             yield {**binding, **dict(zip(names, objects, strict=True))}
+
+    def paced_bindings(self, variables: tuple[Typed, ...], binding: Binding) -> Iterator[Binding | None]:
+        """As `bindings`, with None after every portion.
+
+        Raises:
+          TooLargeError: The limit is reached.
+        """
+        for count, inner in enumerate(self.bindings(variables, binding), 1):
+            yield inner
+            if not count % PORTION_PARTS:
+                self.spend(PORTION_PARTS)
+                yield None
+
+    def spend(self, parts: int) -> None:
+        """Counts parts of large formulas.
+
+        Raises:
+          TooLargeError: There are more of them than the limit.
+        """
+        self.spent["parts"] += parts
+        if self.spent["parts"] > self.most_parts:
+            raise TooLargeError(f"its quantifiers have more than {self.most_parts:.0f} instances, too many to check")
 
 
 def fact_of(atom: Atom, binding: Binding) -> Fact:
@@ -91,7 +128,7 @@ def support(formula: Formula, binding: Binding, state: State, objects: Objects) 
         case Not(Atom() as atom):
             return [Literal(fact_of(atom, binding), positive=False)]
         case Not(part):
-            return support(_negation(part), binding, state, objects)
+            return support(negation(part), binding, state, objects)
         case And(parts):
             return [literal for part in parts for literal in support(part, binding, state, objects)]
         case Or(parts):
@@ -102,7 +139,7 @@ def support(formula: Formula, binding: Binding, state: State, objects: Objects) 
             return [literal for b in chosen for literal in support(part, b, state, objects)]
 
 
-def _negation(formula: Formula) -> Formula:
+def negation(formula: Formula) -> Formula:
     """The negation of a compound formula, with "not" moved inwards."""
     match formula:
         case And(parts):

@@ -12,7 +12,7 @@ from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.schedule import closure, scheduling
 from tailor.executive.planning.semantics.links import linking, orderings_for
 from tailor.executive.planning.semantics.regression import Regression
-from tailor.executive.planning.semantics.state import Objects
+from tailor.executive.planning.semantics.state import MAX_PARTS, Objects, TooLargeError
 from tailor.executive.planning.semantics.validator import validation
 
 
@@ -43,14 +43,21 @@ def shortest_suffix(plan: Plan, done: Collection[int], domain: Domain, problem: 
       problem: Problem with the current facts as initial state, and the current goal.
 
     Returns:
-      As `suffix`; None if not even all the remaining steps reach the goal.
+      As `suffix`; None if not even all the remaining steps reach the goal, or there is too much to check.
     """
-    objects = Objects(problem)
+    try:
+        return (yield from _shortest(plan, done, domain, Objects(problem, MAX_PARTS)))
+    except TooLargeError:
+        return None
+
+
+def _shortest(plan: Plan, done: Collection[int], domain: Domain, objects: Objects) -> Work[Plan | None]:
+    problem = objects.problem
     left = tuple(step for step in plan.steps if step.id not in done)
     needs = Regression(domain, objects)
     for first in range(len(left), -1, -1):
         if first < len(left):
-            needs.add(left[first])
+            yield from needs.add(left[first])
             yield
         if not needs.possible:
             return None

@@ -11,8 +11,9 @@ from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.semantics.action_effects import affected
 from tailor.executive.planning.semantics.happenings import Event, happenings
 from tailor.executive.planning.semantics.interference import reads
+from tailor.executive.planning.semantics.large_formulas import holding
 from tailor.executive.planning.semantics.link_check import Bound, faulty_link
-from tailor.executive.planning.semantics.state import Objects, State, conditions_at, holds
+from tailor.executive.planning.semantics.state import Objects, State, conditions_at
 from tailor.executive.planning.semantics.step_check import Unsound, bind_step, check_duration
 
 
@@ -37,7 +38,7 @@ def validation(plan: Plan, domain: Domain, objects: Objects) -> Work[str]:
     try:
         bound: Bound = {}
         state = yield from _simulate(plan, domain, objects, bound)
-        if not holds(problem.goal, {}, state, objects):
+        if not (yield from holding(problem.goal, {}, state, objects)):
             return f"the goal {problem.goal_text} does not hold at the end"
     except Unsound as reason:
         return str(reason)
@@ -58,16 +59,18 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
         for step in starting:
             bound[step.id] = bind_step(step, domain, objects)
             check_duration(step, *bound[step.id], objects, plan)
-        _check_conditions(events, state, objects, bound)
+        yield from _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
-        changes = [(event, *_changes(event, state, began, objects, bound)) for event in events]
+        changes: list[_Change] = []
+        for event in events:
+            changes.append((event, *(yield from _changes(event, state, began, objects, bound))))
         _check_interference(changes, objects, bound)
         added = frozenset().union(*(more for _, more, _ in changes))
         removed = frozenset().union(*(less for _, _, less in changes))
         state = (state - removed) | added
         running += [event.step for event in events if event.step and not event.ends and plan.durative]
         running = [step for step in running if not any(event.ends and event.step is step for event in events)]
-        _check_invariants(running, state, objects, bound)
+        yield from _check_invariants(running, state, objects, bound)
         yield
     return state
 
@@ -79,35 +82,35 @@ def _moments(event: Event, action: Action) -> tuple[str, ...]:
     return ("end",) if event.ends else ("start",)
 
 
-def _check_conditions(events: list[Event], state: State, objects: Objects, bound: Bound) -> None:
+def _check_conditions(events: list[Event], state: State, objects: Objects, bound: Bound) -> Work[None]:
     for event in events:
-        when = _unmet(event, state, objects, bound)
+        when = yield from _unmet(event, state, objects, bound)
         if when and event.step is not None:
             raise Unsound(f"step {event.step.id}: {format_atom(event.step.action)} lacks a condition at its {when}")
 
 
-def _unmet(event: Event, state: State, objects: Objects, bound: Bound) -> str:
+def _unmet(event: Event, state: State, objects: Objects, bound: Bound) -> Work[str]:
     """The moment of an event's first condition that fails in a state; "" if all hold."""
     if event.step is None:
         return ""
     action, binding = bound[event.step.id]
     for when in _moments(event, action):
         for condition in action.conditions:
-            if condition.when == when and not holds(condition.formula, binding, state, objects):
+            if condition.when == when and not (yield from holding(condition.formula, binding, state, objects)):
                 return when
     return ""
 
 
-def _check_invariants(running: list[Step], state: State, objects: Objects, bound: Bound) -> None:
+def _check_invariants(running: list[Step], state: State, objects: Objects, bound: Bound) -> Work[None]:
     for step in running:
         action, binding = bound[step.id]
-        if not holds(conditions_at(action.conditions, "over"), binding, state, objects):
+        if not (yield from holding(conditions_at(action.conditions, "over"), binding, state, objects)):
             raise Unsound(f"step {step.id}: {format_atom(step.action)} loses a condition that it needs all the time")
 
 
 def _changes(
     event: Event, state: State, began: dict[int, State], objects: Objects, bound: Bound
-) -> tuple[frozenset[Fact], frozenset[Fact]]:
+) -> Work[tuple[frozenset[Fact], frozenset[Fact]]]:
     """The facts that an event adds and removes; add effects win over delete effects of the same event."""
     if event.step is None:
         return event.added, event.removed
@@ -116,7 +119,7 @@ def _changes(
     removed: set[Fact] = set()
     for effect in action.effects:
         if effect.when in _moments(event, action):
-            facts = affected(effect, binding, state, objects, began.get(event.step.id, state))
+            facts = yield from affected(effect, binding, state, objects, began.get(event.step.id, state))
             (added if effect.positive else removed).update(facts)
     return frozenset(added), frozenset(removed - added)
 

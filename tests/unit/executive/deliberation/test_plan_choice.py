@@ -6,6 +6,8 @@ import pytest
 
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import Objects
+from tailor.executive.planning.semantics import large_formulas, state
 from tailor.executive.replay import replay
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.support.toy_domain import line_context
@@ -29,8 +31,8 @@ def length(order):
     return sum(abs(b - a) for a, b in itertools.pairwise(xs))
 
 
-def driven(context, budget=lambda: CheckBudget(500)):
-    states, published, ticks = drive(context, 999, 200, budget, GOAL)
+def driven(context, budget=lambda: CheckBudget(500), goal=GOAL):
+    states, published, ticks = drive(context, 999, 200, budget, goal)
     first = messages_of(published, PlanReport)[0][1]
     return states, [action[2] for action in steps(first)], messages_of(published, ActionFinished), ticks
 
@@ -56,6 +58,31 @@ def test_the_choice_is_the_same_however_the_work_is_divided_and_is_replayed_bit_
     assert [action[2] for action in steps(report)] == driven(context)[1]
     assert states[-1].task.result == "achieved"
     assert list(replay(tour(plan_costs="models"), ticks)) == published
+
+
+def test_a_goal_over_many_objects_is_checked_in_portions(monkeypatch):
+    made, before_check, real = [0], [], Objects.bindings
+
+    def counted(objects, variables, binding):
+        for inner in real(objects, variables, binding):
+            made[0] += 1
+            yield inner
+
+    class MeteredBudget(CheckBudget):
+        def spent(self):
+            before_check.append(made[0])
+            made[0] = 0
+            return super().spent()
+
+    monkeypatch.setattr(Objects, "bindings", counted)
+    for module in (state, large_formulas):
+        monkeypatch.setattr(module, "PORTION_PARTS", 8)
+    goal = GOAL.replace("(visited d)", "(visited d) (forall (?s ?t ?u ?v ?w) (or (= ?s ?t) (not (= ?s ?t))))")
+    states, order, _, _ = driven(tour(plan_costs="models"), lambda: MeteredBudget(500), goal)
+    assert length(order) == pytest.approx(min(map(length, itertools.permutations("abcd"))))
+    assert states[-1].task.result == "achieved"
+    assert sum(before_check) > 2 * 5**5
+    assert max(before_check) < 5**5 / 3
 
 
 def test_a_plan_without_alternatives_stays():
