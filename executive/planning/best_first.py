@@ -78,8 +78,8 @@ class BestFirst(Generic[P]):
         end = min(queue.limit, quota)
         while queue.generated < end:
             if not plans:
-                exhaustive = space.is_exhaustive()
-                yield search_exhausted(exhaustive, self._pruned, self._step_limit, self.generated, self.visited)
+                gap = space.gap()
+                yield search_exhausted(gap, self._pruned, self._step_limit, self.generated, self.visited)
                 return
             if self.generated >= self._limit:
                 yield self._limit_reached(f"{self._limit} plans generated")

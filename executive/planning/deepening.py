@@ -63,8 +63,8 @@ class Deepening(Generic[P]):
                         stack.append(other)
                 yield None
             bound = beyond
-        exhaustive, most = self._space.is_exhaustive(), self._settings.step_limit
-        yield search_exhausted(exhaustive, self._pruned, most, self.generated, self.visited)
+        gap, most = self._space.gap(), self._settings.step_limit
+        yield search_exhausted(gap, self._pruned, most, self.generated, self.visited)
 
     def _children(self, plan: P, order: int) -> list[tuple[Rank, P]]:
         """The children with their ranks, the best last: it is refined first."""

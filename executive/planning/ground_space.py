@@ -12,8 +12,10 @@ from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasu
 from tailor.executive.planning.ground_plans.open_conditions import refine_open
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, initial_plan
 from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimates
+from tailor.executive.planning.ground_plans.separation import UnsettledError
 from tailor.executive.planning.ground_plans.threats import refine_threat
 from tailor.executive.planning.plans.plan import Plan
+from tailor.executive.planning.results import KEEPS_TO_ONE, UNSETTLED
 from tailor.executive.planning.settings import Settings, rankings_for
 from tailor.executive.planning.structures.random_source import RandomSource
 
@@ -24,6 +26,7 @@ class GroundSpace:
     def __init__(self, task: GroundTask, world: StaticWorld, settings: Settings, rng: RandomSource) -> None:
         self._task = task
         self._world = world
+        self._unsettled = False  # whether a plan was dropped that may have a schedule
         names = rankings_for(settings, task.problem.metric)
         self._ranking = Ranking(names, GroundEstimates(task), settings.weight)
         measures = GroundFlawMeasures(task)
@@ -36,11 +39,17 @@ class GroundSpace:
 
     def is_complete(self, plan: PartialPlan) -> bool:
         """See `PlanSpace`: whether there is a schedule in which no events interfere."""
-        return schedule(plan, self._task, self._world) is not None
+        try:
+            return schedule(plan, self._task, self._world) is not None
+        except UnsettledError:
+            self._unsettled = True
+            return False
 
-    def is_exhaustive(self) -> bool:
+    def gap(self) -> str:
         """See `PlanSpace`."""
-        return not self._task.has_alternatives_over_all()
+        if self._task.has_alternatives_over_all():
+            return KEEPS_TO_ONE
+        return UNSETTLED if self._unsettled else ""
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """See `PlanSpace`; a plan without flaws or schedule has no refinements."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from tailor.executive.interfaces.values import Fact
@@ -9,7 +10,7 @@ from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground_plans.extraction import Frame
-from tailor.executive.planning.ground_plans.separation import separated
+from tailor.executive.planning.ground_plans.separation import UnsettledError, separated
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
@@ -19,9 +20,12 @@ from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
+from tailor.executive.planning.results import KEEPS_TO_ONE, UNSETTLED
 from tailor.executive.planning.settings import Settings, rankings_for
 from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
+
+MAX_COMPLETIONS = 50  # tried for a schedule; nearly always the first one has one
 
 
 class LiftedSpace:
@@ -30,6 +34,7 @@ class LiftedSpace:
     def __init__(self, task: LiftedTask, settings: Settings, rng: RandomSource) -> None:
         measures = LiftedMeasures(task)
         self._task = task
+        self._unsettled = False  # whether a plan was dropped that may have a schedule
         self._ranking = Ranking(rankings_for(settings, task.ground.problem.metric), measures, settings.weight)
         self._orders = [FlawSelection(parse_flaw_order(order.text), measures, rng) for order in settings.flaw_orders]
         self.rank = self._ranking.rank
@@ -40,12 +45,13 @@ class LiftedSpace:
 
     def is_complete(self, plan: LiftedPlan) -> bool:
         """See `PlanSpace`: whether there is an object for every variable, and a schedule without interference."""
-        bindings = plan.bindings.completed()
-        return bindings is not None and self._schedule(plan, _names(plan, bindings)) is not None
+        return self._completion(plan) is not None
 
-    def is_exhaustive(self) -> bool:
+    def gap(self) -> str:
         """See `PlanSpace`."""
-        return not self._task.ground.has_alternatives_over_all()
+        if self._task.ground.has_alternatives_over_all():
+            return KEEPS_TO_ONE
+        return UNSETTLED if self._unsettled else ""
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
@@ -58,18 +64,29 @@ class LiftedSpace:
 
     def extract(self, plan: LiftedPlan) -> Plan:
         """See `PlanSpace`; the bindings are lines as VHPOP prints them."""
-        task, bindings = self._task, plan.bindings.completed()
-        assert bindings is not None
+        task, completion = self._task, self._completion(plan)
+        assert completion is not None
+        bindings, orderings = completion
         names = _names(plan, bindings)
-        orderings = self._schedule(plan, names)
-        assert orderings is not None
         frame = Frame(names, orderings, task.first_node, task.moments, task.ground.grid)
         order = {step.id: n for n, step in enumerate(frame.steps())}
         links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
         return frame.plan(task.ground.problem, links, plan.bindings.lines())
 
-    def _schedule(self, plan: LiftedPlan, names: tuple[Fact, ...]) -> Orderings | None:
-        return separated(plan.orderings, names, self._task.ground.problem.timed, self._task.world)
+    def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:
+        """Objects for all variables with which there is a schedule, and the schedule; None if there are none."""
+        timed, world = self._task.ground.problem.timed, self._task.world
+        completions = plan.bindings.completions()
+        for bindings in itertools.islice(completions, MAX_COMPLETIONS):
+            try:
+                orderings = separated(plan.orderings, _names(plan, bindings), timed, world)
+            except UnsettledError:
+                self._unsettled = True
+                continue
+            if orderings is not None:
+                return bindings, orderings
+        self._unsettled |= next(completions, None) is not None
+        return None
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
         cell = plan.links

@@ -22,8 +22,8 @@ class PlanSpace(Protocol[P]):
         """Whether a plan without flaws can be executed."""
         ...
 
-    def is_exhaustive(self) -> bool:
-        """Whether every plan is below the root, so that a space without solutions proves that there is none."""
+    def gap(self) -> str:
+        """Why a space without solutions is no proof that there is none; "" if it is: every plan is below the root."""
         ...
 
     def refine(self, plan: P, order: int) -> list[P]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tailor.executive.planning.plans.plan import Result
 
 KEEPS_TO_ONE = "the search is exhausted, but of a condition over all with alternatives it keeps to one throughout"
+UNSETTLED = "the search is exhausted, but for some plan it gave up to look for a schedule without interference"
 
 
 def goal_unreachable() -> Result:
@@ -12,18 +13,18 @@ def goal_unreachable() -> Result:
     return Result("unsolvable", None, "the goal cannot be reached, not even without delete effects", 1, 0)
 
 
-def search_exhausted(exhaustive: bool, pruned: bool, step_limit: int, generated: int, visited: int) -> Result:
+def search_exhausted(gap: str, pruned: bool, step_limit: int, generated: int, visited: int) -> Result:
     """Result of an empty search space: a proof, unless the space does not hold all plans.
 
     Args:
-      exhaustive: As of the plan space.
+      gap: As of the plan space.
       pruned: Whether plans were dropped for having more than `step_limit` steps.
       step_limit: Maximum number of steps in a plan.
       generated: Number of plans generated.
       visited: Number of plans visited.
     """
-    if not exhaustive:
-        return Result("limit", None, KEEPS_TO_ONE, generated, visited)
+    if gap:
+        return Result("limit", None, gap, generated, visited)
     if pruned:
         return Result("limit", None, f"no plan of up to {step_limit} steps", generated, visited)
     return Result("unsolvable", None, "every partial plan has been refined to a dead end", generated, visited)

@@ -18,8 +18,14 @@ from tailor.executive.planning.pddl.problem import TimedLiteral
 from tailor.executive.planning.structures.orderings import FIRST, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
+Pair = tuple[int, int]  # nodes, the first before the second
+MAX_REVISED = 200  # orderings added once more after a wrong choice: some milliseconds, nearly all plans need none
 Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
 Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
+
+
+class UnsettledError(Exception):
+    """Too many choices between the orders of interfering events have failed to tell whether there is a schedule."""
 
 
 class Event(NamedTuple):
@@ -55,16 +61,43 @@ def separated(
 
     Returns:
       None if there is no such schedule. Without durations the steps follow one another: the same orderings.
+
+    Raises:
+      UnsettledError: Too many choices failed.
     """
     if not isinstance(orderings, TemporalNetwork):
         return orderings
     events = _events(names, timed, world)
-    while (pair := _coincident(orderings, events)) is not None:
-        further = orderings.ordered(*pair) or orderings.ordered(pair[1], pair[0])
-        if further is None:
-            return None
-        orderings = further
-    return orderings
+    network: TemporalNetwork | None = orderings
+    chosen: list[tuple[Pair, bool]] = []  # orderings that were added, and whether their opposites are left to try
+    revised = 0
+    while network is not None and (pair := _coincident(network, events)) is not None:
+        if (further := network.ordered(*pair)) is not None:
+            chosen.append((pair, True))
+        elif (further := network.ordered(pair[1], pair[0])) is not None:
+            chosen.append(((pair[1], pair[0]), False))
+        else:
+            further = _with_last_reversed(orderings, chosen)
+            revised += len(chosen)
+            if revised > MAX_REVISED:
+                raise UnsettledError
+        network = further
+    return network
+
+
+def _with_last_reversed(orderings: TemporalNetwork, chosen: list[tuple[Pair, bool]]) -> TemporalNetwork | None:
+    """The orderings with the choices up to the last one whose opposite is left to try, reversed; None if none is."""
+    while chosen:
+        (a, b), is_open = chosen.pop()
+        if not is_open:
+            continue
+        chosen.append(((b, a), False))
+        network: TemporalNetwork | None = orderings
+        for pair, _ in chosen:
+            network = network.ordered(*pair) if network is not None else None
+        if network is not None:
+            return network
+    return None
 
 
 def _coincident(network: TemporalNetwork, events: Sequence[Event]) -> tuple[int, int] | None:

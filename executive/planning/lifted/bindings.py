@@ -141,17 +141,17 @@ class Bindings:
         return Bindings({**self._groups, **dict.fromkeys(group.members, narrowed)})
 
     # --- completion ------------------------------------------------------------------------------
-    def completed(self) -> Bindings | None:
-        """The bindings with an object for every variable, the first consistent by name; None if there is none."""
+    def completions(self) -> Iterator[Bindings]:
+        """The bindings with an object for every variable, those consistent, in the order of the names."""
         current: Bindings | None = self
         tried: list[tuple[Bindings, Variable, Iterator[str]]] = []  # no recursion: there may be thousands of variables
         while current is not None:
             variable = next((v for v, group in current._groups.items() if group.value is None), None)
             if variable is None:
-                return current
-            tried.append((current, variable, iter(sorted(current._groups[variable].choices))))
+                yield current
+            else:
+                tried.append((current, variable, iter(sorted(current._groups[variable].choices))))
             current = _next_bound(tried)
-        return None
 
     def lines(self) -> tuple[str, ...]:
         """The bindings as VHPOP prints them: one line per group, last changed first."""

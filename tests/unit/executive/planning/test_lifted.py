@@ -126,7 +126,7 @@ def test_random_open_conditions_shuffle_lifted_steps_as_well():
 
 def test_thousands_of_variables_may_be_left_to_choose():
     choices = {(f"?v{n}", 1): ["a", "b"] for n in range(1500)}
-    completed = Bindings().with_variables(choices).separated(("?v0", 1), ("?v1", 1)).completed()
+    completed = next(Bindings().with_variables(choices).separated(("?v0", 1), ("?v1", 1)).completions())
     assert (completed.value(("?v0", 1)), completed.value(("?v1", 1)), completed.value(("?v1499", 1))) == ("a", "b", "a")
 
 
@@ -134,9 +134,9 @@ def test_variables_that_have_too_few_objects_to_differ_have_no_completion():
     names = [("?x", 1), ("?y", 1), ("?z", 2)]
     bindings = Bindings().with_variables({name: ["a", "b"] for name in names})
     for left, right in ((0, 1), (0, 2), (1, 2)):
-        assert bindings.completed() is not None
+        assert next(bindings.completions(), None) is not None
         bindings = bindings.separated(names[left], names[right])
-    assert bindings.completed() is None
+    assert next(bindings.completions(), None) is None
 
 
 WIDE = "(define (domain wide) (:predicates (p ?a ?b ?c) (q)) (:action a :parameters (?x) :effect {}))"

@@ -1,0 +1,73 @@
+"""Interfering events are kept apart in whichever orders fit; where a search for these gave up, there is no proof."""
+
+import itertools
+
+import pytest
+
+from tailor.executive.planning import Settings, parse_plan, validate
+from tailor.executive.planning.ground_plans import separation
+from tests.support.planning_problems import read, solve
+
+DOMAIN = """(define (domain d) (:requirements :durative-actions :timed-initial-literals :conditional-effects)
+  (:predicates (open-a) (open-b) (open-c) (x) (z) (y) (done-a) (done-b) (done-c))
+  (:durative-action a :parameters () :duration (= ?duration 10) :condition (at start (open-a))
+    :effect (and (at end (done-a)) (when (at start (x)) (at end (y)))))
+  (:durative-action b :parameters () :duration (= ?duration 10) :condition (at start (open-b))
+    :effect (and (at end (done-b)) (at start (x)) (at start (z))))
+  (:durative-action c :parameters () :duration (= ?duration 10) :condition (at start (open-c))
+    :effect (and (at end (done-c)) (when (at start (z)) (at end (y))))))"""
+# b is at 1 or 2, c at 2, a at 1, 2 or 3, and neither a nor c at the time of b: b must be at 1, before a
+PROBLEM = """(define (problem x) (:domain d) (:init (open-a) (open-b) (at 1 (open-c)) (at 4 (not (open-a)))
+  (at 3 (not (open-b))) (at 3 (not (open-c)))) (:goal (and {})))"""
+GOALS = list(map(" ".join, itertools.permutations(["(done-a)", "(done-b)", "(done-c)"])))
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("goal", GOALS)
+def test_the_order_of_the_goals_does_not_decide_whether_there_is_a_schedule(goal, ground):
+    domain, problem = read(DOMAIN, PROBLEM.format(goal))
+    assert validate(parse_plan("1: (b) [10]\n2: (a) [10]\n2: (c) [10]"), domain, problem) == ""
+    result = solve(domain, problem, Settings(tolerance_s=1, ground=ground))
+    assert result.status == "solved"
+    assert validate(result.plan, domain, problem) == ""
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+def test_without_any_schedule_there_is_no_plan(ground):
+    domain, problem = read(DOMAIN, PROBLEM.format(GOALS[0]).replace("at 3 (not (open-b))", "at 2 (not (open-b))"))
+    assert solve(domain, problem, Settings(tolerance_s=1, ground=ground)).status == "solved"
+    domain, problem = read(DOMAIN.replace("(z)) (at end (y))", "(x)) (at end (y))"), problem_without_room())
+    assert solve(domain, problem, Settings(tolerance_s=1, ground=ground)).status == "unsolvable"
+
+
+def problem_without_room():
+    """Of a, b and c, of which b must be apart from both, all at 1."""
+    times = "(open-c) (at 2 (not (open-a))) (at 2 (not (open-b))) (at 2 (not (open-c)))"
+    return f"(define (problem x) (:domain d) (:init (open-a) (open-b) {times}) (:goal (and {GOALS[0]})))"
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+def test_a_plan_whose_schedules_were_not_all_tried_is_no_dead_end(monkeypatch, ground):
+    monkeypatch.setattr(separation, "MAX_REVISED", 0)
+    domain, problem = read(DOMAIN, PROBLEM.format(GOALS[0]))
+    result = solve(domain, problem, Settings(tolerance_s=1, ground=ground))
+    assert result.status == "limit"
+    assert "gave up to look for a schedule" in result.reason
+
+
+UNBOUND = """(define (domain d) (:requirements :durative-actions :timed-initial-literals :conditional-effects)
+  (:constants o1) (:predicates (open) (x ?o) (y) (done-b) (done-c))
+  (:durative-action b :parameters (?o) :duration (= ?duration 10) :condition (at start (open))
+    :effect (and (at end (done-b)) (at start (x ?o))))
+  (:durative-action c :parameters () :duration (= ?duration 10) :condition (at start (open))
+    :effect (and (at end (done-c)) (when (at start (x o1)) (at end (y))))))"""
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+def test_the_object_that_no_condition_determines_is_one_that_has_a_schedule(ground):
+    init = "(:objects o2) (:init (open) (at 2 (not (open))))"
+    domain, problem = read(UNBOUND, f"(define (problem x) (:domain d) {init} (:goal (and (done-b) (done-c))))")
+    result = solve(domain, problem, Settings(tolerance_s=1, ground=ground))
+    assert result.status == "solved"
+    assert {step.action for step in result.plan.steps} == {("b", "o2"), ("c",)}
+    assert validate(result.plan, domain, problem) == ""
