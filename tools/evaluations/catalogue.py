@@ -22,7 +22,10 @@ EVALUATIONS: dict[str, tuple[str, str]] = {
         "duration models: episodes, mean duration, error on new episodes",
     ),
     "table2": ("tailor.tools.evaluations.models.table2", "failure model: confusion matrix over new approaches"),
-    "feature-spaces": ("tailor.tools.evaluations.models.feature_spaces", "Figure 6 b: error in three feature spaces"),
+    "feature-spaces": (
+        "tailor.tools.evaluations.models.feature_spaces",
+        "Figure 6 b: error in its three feature spaces and one of ours",
+    ),
     "duration-learners": (
         "tailor.tools.evaluations.models.duration_learners",
         "our learners, boosting and WEKA's M5P on the same folds",

@@ -1,4 +1,4 @@
-"""The paper's Figure 6 b: the same learner in three feature spaces; the fewer dimensions, the smaller the error."""
+"""The paper's Figure 6 b: the same learner in its three feature spaces, and in one of ours with the turn besides."""
 
 from __future__ import annotations
 
