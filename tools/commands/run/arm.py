@@ -1,7 +1,8 @@
 """Arm a driver: it obeys the commands of one sender, by default of the running executive.
 
 The request is repeated until the driver's state confirms it. A request to arm is not repeated once anything else has
-changed, such as an e-stop that somebody pressed meanwhile. A robot whose goal is still open moves at once.
+changed, such as an e-stop that somebody pressed meanwhile. A robot whose goal is still open moves at once;
+`tailor goal "(and)"` drops it.
 """
 
 from __future__ import annotations

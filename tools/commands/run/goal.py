@@ -1,6 +1,7 @@
 """Send a PDDL goal to the running executive, e.g. "(and (final pos3) (atball pos3))".
 
-The default is the goal of the scenario.
+The default is the goal of the scenario. "(and)", which holds at once, drops the goal: before a stopped robot is armed
+again, say, which would go on with it.
 """
 
 from __future__ import annotations
