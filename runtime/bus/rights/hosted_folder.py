@@ -24,6 +24,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.profiles import PLAIN, KeyProfile
 
 MAX_SOCKET_BYTES = 107  # Linux: sun_path, without its final zero
+NO_SOCKET = b"#?"  # what follows is no part of the name to zenoh, but settings of an endpoint
 
 
 @contextmanager
@@ -40,8 +41,7 @@ def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Ite
     """
     folder = run_folder(endpoint)
     _make_private(folder.path)
-    if len(str(folder.path / SOCKET)) > MAX_SOCKET_BYTES:
-        raise UsageError(f"{folder.path}: too long for a socket, expected a shorter {VARIABLE}")
+    _check_socket(folder.path / SOCKET)
     lock = folder.path / LOCK
     with _locked(lock, endpoint) as held, _kept_from_cleaners(folder.path):
         try:
@@ -56,6 +56,15 @@ def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Ite
                 _empty(folder.path)
     with suppress(OSError):  # the next bus at this endpoint has made it again
         folder.path.rmdir()
+
+
+def _check_socket(path: Path) -> None:
+    """Raise UsageError for a name at which zenoh makes no socket, or makes one elsewhere, perhaps beside all others."""
+    name = os.fsencode(path)
+    if len(name) > MAX_SOCKET_BYTES:
+        raise UsageError(f"{path.parent}: too long for a socket, expected a shorter {VARIABLE}")
+    if set(name) & set(NO_SOCKET) or name.decode(errors="replace").encode() != name:
+        raise UsageError(f"{path.parent}: no name for a socket, expected a {VARIABLE} in UTF-8 without # and ?")
 
 
 @contextmanager

@@ -241,6 +241,15 @@ def test_a_router_that_stands_still_runs_however_many_wait_for_it(base):
         assert answers == [True]
 
 
+@pytest.mark.parametrize("name", ["a#b", "a?b", "a\udcff", "\u00fc" * 50])
+def test_a_folder_in_which_zenoh_makes_no_socket_is_refused(monkeypatch, name):
+    """It made the socket at what stands before a #, where others may reach it; 107 letters may have more bytes."""
+    with TemporaryDirectory() as short:
+        monkeypatch.setenv("TAILOR_RUN_DIR", f"{short}/{name}")
+        with pytest.raises(UsageError, match=r"expected a (shorter )?TAILOR_RUN_DIR"), hosted(ENDPOINT, []):
+            pass
+
+
 @pytest.mark.parametrize("session", ["", "runtime"])
 def test_a_session_folder_that_is_not_absolute_counts_as_none(monkeypatch, tmp_path, session):
     """The folder would be below the current one: an e-stop from elsewhere would find no bus."""
