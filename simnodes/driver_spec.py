@@ -79,6 +79,20 @@ def shipped_driver_spec(robot: str) -> DriverSpec:
         raise UsageError(f"{declared}: not the specification of a driver: {error}") from error
 
 
+def driver_spec_to_run(robot: str) -> DriverSpec:
+    """As `shipped_driver_spec`, for a process that is to publish and hear what is declared there.
+
+    Raises:
+      UsageError: See `shipped_driver_spec`; also for the name of a topic that nobody declares.
+    """
+    spec = shipped_driver_spec(robot)
+    unknown = [name for name in (*spec.command_topics, *(each.topic for each in spec.sensors)) if name not in TOPICS]
+    if unknown:
+        declared = file(spec_of_robot(robot), "driver")
+        raise UsageError(f"{declared}: there is no topic '{unknown[0]}', expected one of the package or of Tailor")
+    return spec
+
+
 def read_driver_spec(written: str) -> DriverSpec:
     """The declaration in a TOML text.
 

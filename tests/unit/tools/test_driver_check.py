@@ -12,9 +12,11 @@ from tailor.executive.interfaces.domain import Axis
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
 from tailor.schemas.messages import VelocityCommand
+from tailor.simnodes import driver_spec
 from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
+from tailor.tools.main import main
 
 SOCCER = domains.load("soccer")
 
@@ -184,3 +186,22 @@ def test_what_nobody_would_read_in_a_specification_is_refused(tmp_path, line, wr
 def test_a_specification_that_would_disable_the_guard_is_refused(tmp_path, line, wrong, expected):
     with pytest.raises(UsageError, match=expected):
         driver_of(SOCCER, str(altered(tmp_path, line, wrong)))
+
+
+AGILO = driver_spec.file(driver_spec.spec_of_robot("agilo"), "driver").read_text()
+
+
+@pytest.mark.parametrize(("old", "new"), [('topic = "cmd_vel"', 'topic = "wheels"'), ("odom =", "wheels =")])
+def test_a_topic_that_nobody_declares_is_named_before_the_bus_is_opened(tmp_path, monkeypatch, capsys, old, new):
+    """It ended `tailor driver` and `tailor sim` in a traceback, and systemd started them again and again."""
+    written = tmp_path / "driver.toml"
+    written.write_text(AGILO.replace(old, new))
+    monkeypatch.setattr(driver_spec, "file", lambda *_: written)
+    with pytest.raises(UsageError, match=r"driver\.toml: there is no topic 'wheels', expected one of the package"):
+        driver_spec.driver_spec_to_run("agilo")
+    assert main(["sim", "agilo"]) == 2
+    assert "there is no topic 'wheels'" in capsys.readouterr().err
+
+
+def test_a_driver_whose_topics_are_all_declared_runs():
+    assert driver_spec.driver_spec_to_run("agilo") == driver_spec.shipped_driver_spec("agilo")

@@ -19,7 +19,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.simnodes.driver_spec import driver_spec_to_run
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
 from tailor.tools.cli.plain_text import plain
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--attempts is {arguments.attempts}, expected at least 0")
     leave = checked_sender(arguments.leave, "--leave")
     hardware = hardware_of(arguments.hardware, bus_settings(arguments).endpoint)
-    spec = shipped_driver_spec(hardware.robot)
+    spec = driver_spec_to_run(hardware.robot)
     end = BusEnd(arguments, stop_on_signals())
     with aside() as terminal, open_bus(arguments, "driver", sender=sender_of(arguments)) as session:
         codec.prime()

@@ -15,7 +15,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.schemas.reason_text import reason_text
-from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.simnodes.driver_spec import driver_spec_to_run
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
@@ -45,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Simulate until stopped, or until the run of the bus has ended and another one has begun."""
     notifier = Notifier.from_environment()
-    declared = shipped_driver_spec(arguments.robot)
+    declared = driver_spec_to_run(arguments.robot)
     if not 0.1 <= arguments.speed <= MAX_SPEED:
         raise UsageError(f"--speed is {arguments.speed}, expected 0.1 to {MAX_SPEED:g}")
     leave = checked_sender(arguments.leave, "--leave")
