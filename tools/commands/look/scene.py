@@ -16,12 +16,14 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
+from rich.text import Text
 
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import beside, check_output, whole_output
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.bus_renewal import BusRun, open_run, opened_anew
 from tailor.tools.cli.systems.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
 from tailor.tools.recordings.damage_notice import warn
@@ -70,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _write(arguments: argparse.Namespace) -> int:
     source: Path = arguments.recording
     target: Path = arguments.output or beside(source, "-scene.mcap")
-    with Console(stderr=True).status(f"reading {source}"):
+    with Console(stderr=True).status(Text(plain(f"reading {source}"))):
         added, feed, damage = add_scenes(source, target)
     warn(source, damage)
     if feed.fault:

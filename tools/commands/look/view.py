@@ -7,6 +7,7 @@ from collections import Counter
 from pathlib import Path
 
 from rich.console import Console
+from rich.text import Text
 
 from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.stopping import stop_on_signals
@@ -97,7 +98,7 @@ def _titles(recordings: list[Path]) -> dict[str, Path]:
 
 def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
     console, explainer = Console(stderr=True), _explainer(arguments)
-    with console.status(f"reading {recording}"):
+    with console.status(Text(plain(f"reading {recording}"))):
         timeline = RunTimeline(explainer, arguments.robot)
         events = recorded_events(recording, timeline, arguments.sender)
     for event in events[:1]:
@@ -107,5 +108,5 @@ def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
         text = plain(f"the scene of {timeline.robot}: {timeline.scene_fault}")
         console.print(text, highlight=False, markup=False, soft_wrap=True)
     if explainer is not None and explainer.missing:
-        console.print(f"alternatives are not shown: {explainer.missing}", highlight=False)
+        console.print(Text(plain(f"alternatives are not shown: {explainer.missing}")), soft_wrap=True)
     return events

@@ -18,6 +18,7 @@ from typing import Any
 
 from rich.console import Console
 from rich.live import Live
+from rich.text import Text
 
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer, no_service
@@ -161,7 +162,7 @@ def _record(
             if bus.requests is not None and isinstance(recorder, SnapshotRecorder):
                 _serve(recorder, bus.requests)
             if live is not None:
-                live.update(_line(recorder.health))
+                live.update(Text(plain(_line(recorder.health))))
             time.sleep(PERIOD_S)
 
 

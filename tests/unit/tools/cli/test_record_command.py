@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -86,3 +88,15 @@ def test_a_folder_without_a_name_is_no_recording(folder):
     record.configure(parser)
     with pytest.raises(UsageError, match="is a folder, expected the name of a new file"):
         record._recorder(parser.parse_args(["--output", folder]), None, None)
+
+
+def test_a_name_that_looks_like_markup_ends_no_recording(monkeypatch):
+    """rich reads [/red] as the end of a colour that was never begun; the live line of a terminal ended the recorder."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(record.time, "sleep", lambda _: setattr(stop, "requested", True))
+    stop, steps = SimpleNamespace(requested=False), []
+    recorder = SimpleNamespace(health=Health(files=[Path("run[/red].mcap")]), step=steps.append)
+    bus = SimpleNamespace(renew=lambda _: None, connected=True, requests=None)
+    notifier = SimpleNamespace(alive=lambda: None, status=lambda _: None)
+    record._record(recorder, bus, stop, notifier, quiet=False)
+    assert len(steps) == 1

@@ -246,3 +246,13 @@ def test_a_recording_of_any_name_is_shown_drawn_compared_and_copied(recording, t
     capsys.readouterr()
     assert run(compare, str(odd), str(named), "--plot", str(tmp_path / "compared.png")) == 0
     assert "\x1b" not in capsys.readouterr().out
+
+
+def test_a_path_that_looks_like_markup_is_shown_and_copied(recording, tmp_path, capsys) -> None:
+    """rich reads [/red] as the end of a colour that was never begun; a line of progress ended both in a traceback."""
+    odd = tmp_path / "a[" / "red].mcap"
+    odd.parent.mkdir()
+    shutil.copy(recording, odd)
+    assert run(view, odd, "-o", tmp_path / "odd.html") == 0
+    assert capsys.readouterr().err.startswith("alternatives are not shown: ")
+    assert run(scene, odd, "-o", tmp_path / "odd.mcap") == 0
