@@ -46,7 +46,7 @@ class SnapshotRecorder:
 
     def close(self) -> Health:
         """Write a snapshot that is due; nothing otherwise."""
-        if self._reason:
+        while self._reason:  # again if another recorder takes the name
             self._write()
         return self.health
 
@@ -67,6 +67,9 @@ class SnapshotRecorder:
         health, path = self.health, self._free_path()
         try:
             health.messages += self._buffer.write(path, {**self._metadata.entries, "snapshot": {"reason": reason}})
+        except FileExistsError:  # another recorder has just taken the name, e.g. for the same failure
+            self._reason, self._number = reason, self._number + 1
+            return
         except OSError as error:
             health.disk_error = error.strerror or str(error)
             return

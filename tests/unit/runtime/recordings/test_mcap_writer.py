@@ -500,6 +500,32 @@ def test_snapshots_of_an_earlier_recorder_are_kept_and_cost_none_of_the_new_ones
     assert (tmp_path / "s_000.mcap").read_text() == "of yesterday"
 
 
+@pytest.mark.parametrize("at_the_end", [True, False])
+def test_two_recorders_of_one_failure_write_a_snapshot_each(tmp_path, monkeypatch, at_the_end):
+    free, taken = SnapshotRecorder._free_path, []
+
+    def raced(self):
+        path = free(self)
+        if not taken:
+            path.write_text("of the other one")
+        taken.append(path)
+        return path
+
+    monkeypatch.setattr(SnapshotRecorder, "_free_path", raced)
+    queue = IngestQueue()
+    recorder = SnapshotRecorder(
+        tmp_path / "s.mcap", queue, Selection(), SnapshotBuffer(100 * S), RecordingMetadata("1", 0)
+    )
+    queue.put(odometry(1))
+    recorder.step(0)
+    recorder.request_snapshot("by hand", 1)
+    for _ in range(0 if at_the_end else 2):
+        recorder.step(1)
+    assert [path.name for path in recorder.close().files] == ["s_001.mcap"]
+    assert (tmp_path / "s_000.mcap").read_text() == "of the other one"
+    assert recorder.health.disk_error == ""
+
+
 def test_a_run_that_does_not_fit_on_the_disk_raises(tmp_path, full_disk):
     from tailor.tools.lockstep.run_writer import RunWriter
     from tests.support.toy_domain import line_context
