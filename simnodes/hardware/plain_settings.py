@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass, field
 from typing import Literal
@@ -13,6 +12,7 @@ from tailor.schemas.ros2.profiles import MAX_DOMAIN
 from tailor.schemas.settings import from_table
 
 MIN_RATE_HZ, MAX_RATE_HZ = 0.1, 100.0  # the period of the least is a number; the driver's loop has the largest
+MAX_START = 1e6  # m or rad; every receiver refuses a pose far beyond
 TOPIC = re.compile(r"/?[\w-]+(/[\w-]+)*", re.ASCII)  # zenoh opens no other key, and some are patterns
 
 
@@ -89,8 +89,8 @@ def _faults(settings: PlainSettings) -> list[str]:
     for name, value in (("pose.drift_per_m", pose.drift_per_m), ("pose.drift_per_rad", pose.drift_per_rad)):
         if not 0.0 <= value <= 1.0:
             faults.append(f"{name} is {value:g}, expected 0 to 1")
-    if pose.start and (len(pose.start) != 3 or not all(map(math.isfinite, pose.start))):
-        faults.append("pose.start: expected x, y and phi")
+    if pose.start and (len(pose.start) != 3 or not all(abs(value) <= MAX_START for value in pose.start)):
+        faults.append(f"pose.start: expected x, y and phi, of at most {MAX_START:g}")
     if not topics.pose and not pose.start:
         faults.append("topics.pose is empty: expected a localiser, or pose.start")
     if not topics.cmd_vel or not topics.odom:

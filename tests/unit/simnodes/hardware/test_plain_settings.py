@@ -19,6 +19,8 @@ WRONG = {
     'robot = "r"\n[topics]\npose = ""': "expected a localiser, or pose.start",
     'robot = "r"\n[topics]\nodom = ""': "expected a name each",
     'robot = "r"\n[pose]\nstart = [1.0]': "expected x, y and phi",
+    'robot = "r"\n[pose]\nstart = [1e16, 0, 0]': "expected x, y and phi, of at most 1e+06",
+    'robot = "r"\n[pose]\nstart = [nan, 0, 0]': "expected x, y and phi",
     'robot = "r"\n[pose]\ndrift_per_m = -1.0': "pose.drift_per_m is -1, expected 0 to 1",
     'robot = "r"\n[bus]\nprofile = "dds"': "expected one of: plain, rmw_zenoh",
     'robot = "r"\n[bus]\ndomain_id = 233': "bus.domain_id is 233, expected 0 to 232",
