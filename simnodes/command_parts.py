@@ -68,6 +68,10 @@ class CommandParts:
             del self._waiting[sequence]
         return [*dropped, self._joined(part.sequence, parts)]
 
+    def forget(self) -> None:
+        """Let no part wait any more."""
+        self._waiting = {}
+
     def _dropped(self, count: int) -> list[Joined]:
         oldest = list(self._waiting)[: max(0, count)]
         for sequence in oldest:

@@ -176,9 +176,12 @@ class Driver:
             return ArmRefusal.NOT_READY
         by_people = not sample.key.endswith(f"/{SELF_ARM}")
         sender = (request.sender if by_people else "") or sample.sender
-        latched = self.guard.mode is Mode.ESTOPPED
+        self.guard.output(now_ns)  # so that one whose command is overdue has stopped
+        mode = self.guard.mode
         refusal = self.guard.arm(now_ns, sender, request.epoch, request.reset, by_people)
-        if latched and refusal is None:
+        if refusal is None and mode is not Mode.ARMED:
+            self._parts.forget()  # half a command from before would be completed, and then be no older than its rest
+        if refusal is None and mode is Mode.ESTOPPED:
             self.held.forget()  # people have taken over; who still holds a switch is heard again within 0.1 s
         return refusal
 

@@ -138,6 +138,27 @@ def test_parts_from_before_arming_are_not_joined_with_later_ones():
     assert driver.guard.output(2) == REST
 
 
+@pytest.mark.promise("P14")
+@pytest.mark.parametrize("stop", ["disarmed", "e-stop", "silence"])
+def test_parts_from_before_a_stop_are_not_joined_with_those_after_arming_again(stop):
+    """A minute old, and taken for as young as the part that completed it: the first command since arming."""
+    driver, minute_ns = armed(), 60_000 * MS
+    driver.take([base(0.9, 1)], {}, 0)
+    stops = {"disarmed": ("robot/arm_request", ArmRequest(False, False, "", 0)), "e-stop": ("estop", EStop(True))}
+    driver.take([Sample(*stops[stop], 1, 1, B)] if stop in stops else [], {}, 1)
+    again = Sample("robot/arm_request", ArmRequest(True, True, A, 0), minute_ns, 2, B)
+    driver.take([again, arm(0.3, 1, at_ns=minute_ns)], {}, minute_ns)
+    assert driver.guard.mode is Mode.ARMED
+    assert driver.guard.output(minute_ns) == REST
+
+
+def test_a_request_to_arm_that_is_repeated_while_armed_costs_no_command():
+    driver = armed()
+    driver.take([base(0.4, 1)], {}, 0)
+    driver.take([Sample("robot/arm_request", ArmRequest(True, False, A, 0), 1, 1, B), arm(0.3, 1, at_ns=2)], {}, 2)
+    assert driver.guard.output(2) == (0.4, 0.5, 0.3, 0.02)
+
+
 def test_the_first_part_of_a_number_counts():
     driver = armed()
     driver.take([base(0.4, 1), base(1.0, 1), arm(0.3, 1)], {}, 0)
