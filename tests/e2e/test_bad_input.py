@@ -32,6 +32,7 @@ def refused(*arguments):
         (("up", "soccer", "--scenario", "nope"), "no scenario 'nope' in soccer, expected one of: approach-dribble"),
         (("up", "soccer", "--seed", "-1"), "--seed is -1, expected at least 0"),
         (("up", "soccer", "--horizon", "0"), "--horizon is 0, expected at least 1"),
+        (("up", "soccer", "--seed", "9" * 20), f"--seed is {'9' * 20}, expected a number of at most 64 bits"),
         (("up", "soccer", "--planner", "no-such-vhpop -g"), "there is no program 'no-such-vhpop'"),
         (
             ("executive", "soccer", "--planner", "'vhpop"),

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import shown
+from tailor.schemas.settings import MAX_INTEGER
 
 
 def at_least(minimum: int, flag: str) -> Callable[[str], int]:
@@ -19,9 +21,11 @@ def at_least(minimum: int, flag: str) -> Callable[[str], int]:
 
 
 def checked(value: int, minimum: int, flag: str) -> int:
-    """The value itself; raises UsageError that names the flag if the value is below `minimum`."""
+    """The value itself; raises UsageError that names the flag if it is below `minimum`, or has more than 64 bits."""
     if value < minimum:
         raise UsageError(f"{flag} is {value}, expected at least {minimum}")
+    if value > MAX_INTEGER:  # a recording of a run with it could not be read as settings again
+        raise UsageError(f"{flag} is {shown(value)}, expected a number of at most 64 bits")
     return value
 
 
