@@ -1,6 +1,7 @@
 """Deployment files, overridden by flags, give the configuration of the executive."""
 
 import argparse
+import os
 import sys
 from types import SimpleNamespace
 
@@ -9,7 +10,7 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.deliberation.context import PlannerCommand
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.deployment import executive_config, read_deployment
 from tailor.tools.cli.systems.system_flags import configure_system, deployment_from
 
 
@@ -105,3 +106,13 @@ def test_a_missing_planner_is_an_error(tmp_path):
 def test_a_time_limit_must_be_positive_and_finite(tmp_path, limit):
     with pytest.raises(UsageError, match="expected seconds above 0"):
         config(tmp_path, f"[planner]\nlimit_s = {limit}\n")
+
+
+def test_a_pipe_is_no_deployment_file():
+    """It was read once for the name of the bus and once, empty, for its session: with the default bus."""
+    reader, writer = os.pipe()
+    os.write(writer, b'[bus]\nendpoint = "tcp/127.0.0.1:7999"\n')
+    os.close(writer)
+    with pytest.raises(UsageError, match=f"/dev/fd/{reader}: a pipe, expected a deployment file"):
+        read_deployment(f"/dev/fd/{reader}")
+    os.close(reader)

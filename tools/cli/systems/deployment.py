@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from tailor.executive.composition import ExecutiveConfig
 from tailor.executive.deliberation.context import PlannerCommand, Settings
@@ -33,6 +34,8 @@ def read_deployment(path: str) -> Deployment:
     """
     if not path:
         return Deployment()
+    if Path(path).is_fifo():  # a command and its children read it several times; empty, it names the default bus
+        raise UsageError(f"{path}: a pipe, expected a deployment file that can be read again")
     deployment = from_table(Deployment, read_toml(path, "a deployment file"), path)
     if deployment.executive.external != PlannerCommand():  # there for recordings, which hold the executive's settings
         raise UsageError(f"{path}: table executive.external, expected its keys in the table planner")
