@@ -161,6 +161,8 @@ def _effects(
                 prevented[literal] = prevented.get(literal, ()) + failing
             elif literal not in achieved and (effect.positive or Literal(literal.fact) not in achieved):
                 conditions = yield from _conditions(effect, inner, before, now)
+                if not effect.positive:  # an add effect of the same event would have won
+                    conditions += prevented.get(Literal(literal.fact), ())
                 achieved[literal] = Source(moment.step, position, conditions)
     return achieved, prevented
 

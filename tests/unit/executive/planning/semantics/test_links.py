@@ -52,6 +52,14 @@ def test_what_keeps_a_conditional_effect_from_breaking_a_link_is_linked_too():
     assert (2, 3) in orderings
 
 
+def test_what_keeps_an_action_from_adding_again_what_it_deletes_is_linked_too():
+    # finish switches b off, unless a is off: a is pressed before it
+    task = lamps("(not (on b))", "(and (not (on b)) (when (not (on a)) (on b)))")
+    links, orderings = linked("1:(press a)\n2:(press b)\n3:(finish)\n", *task)
+    assert {(1, "(on a)", 3), (3, "(not (on b))", GOAL)} <= links
+    assert (1, 3) in orderings
+
+
 def test_an_effect_at_the_end_is_linked_to_what_it_needs_at_the_start():
     domain = """
     (define (domain kiln) (:requirements :adl :durative-actions) (:predicates (lit) (clay) (ash))
