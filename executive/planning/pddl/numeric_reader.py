@@ -71,6 +71,8 @@ def _numeric(node: Node, scope: Scope) -> Numeric:
     if node.head in {"+", "-", "*", "/"}:
         return _operation(node, scope)
     parameters = scope.domain.functions.get(node.head)
+    if node.head == "total-cost":
+        raise node.place.unsupported("the changing (total-cost) in a number")
     if parameters is None:
         raise node.place.error(f"expected a number or a function, found '({node.head} ...)'")
     return Function(node.head, read_terms(node, parameters, scope))

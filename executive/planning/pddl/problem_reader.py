@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
@@ -129,7 +130,8 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
         if len(draft.timed) == MAX_TIMED:
             raise form.place.error(f"more than {MAX_TIMED} timed literals")
         literal = _literal(form_of(form.items[2], "a literal"), scope)
-        if TimedLiteral(time_s, replace(literal, positive=not literal.positive)) in draft.timed:
+        opposite, time_ns = replace(literal, positive=not literal.positive), _nanoseconds(time_s)
+        if any(other.literal == opposite and _nanoseconds(other.time_s) == time_ns for other in draft.timed):
             raise form.place.error(f"{literal} and its opposite at the same time")
         if time_s < NANOSECOND_S:
             _enter(literal, draft, form.place)
@@ -137,6 +139,10 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
             draft.timed.append(TimedLiteral(time_s, literal))
     else:
         _enter(_literal(form, scope), draft, form.place)
+
+
+def _nanoseconds(time_s: float) -> int:
+    return round(Fraction(repr(time_s)) * 10**9)
 
 
 def _enter(literal: Literal, draft: _Draft, place: Place) -> None:

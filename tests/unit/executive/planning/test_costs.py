@@ -55,6 +55,16 @@ def test_the_cheapest_object_is_proven_to_be_the_best(cost, values, chosen, leas
     assert (search.value, search.ended) == (least, "proven")
 
 
+def test_the_total_cost_is_no_constant_of_a_cost_or_duration():
+    for domain in (
+        DOMAIN.format("(+ 1 (total-cost))"),
+        """(define (domain d) (:predicates (r) (s)) (:functions (total-cost) (f ?x))
+        (:durative-action act :parameters () :duration (>= ?duration (total-cost)) :effect (at end (r))))""",
+    ):
+        with pytest.raises(Unsupported, match=r"the changing \(total-cost\) in a number is not supported"):
+            read(domain, PROBLEM.format(""))
+
+
 def test_the_second_search_drops_plans_that_cost_as_much(options):
     """A step may be repeated for ever: without its cost the search would not end."""
     domain, problem = read(

@@ -385,6 +385,10 @@ PROBLEM = "(define (problem p) (:domain d)\n (:objects a)\n {part})"
             "(:goal (p)) (:init (at 1 (p)) (at 1 (not (p))))",
             "problem:3:32: (not (p)) and its opposite at the same time",
         ),
+        (
+            "(:goal (p)) (:init (at 1 (p)) (at 1.0000000004 (not (p))))",
+            "problem:3:32: (not (p)) and its opposite at the same time",
+        ),
     ],
 )
 def test_errors_in_problems_point_at_line_and_column(part, message):
