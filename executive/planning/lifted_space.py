@@ -22,10 +22,10 @@ from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.results import KEEPS_TO_ONE, UNSETTLED
 from tailor.executive.planning.settings import Settings, rankings_for
-from tailor.executive.planning.structures.orderings import Orderings
+from tailor.executive.planning.structures.orderings import GOAL, Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
 
-MAX_COMPLETIONS = 50  # tried for a schedule; nearly always the first one has one
+MAX_COMPLETIONS = 10  # tried for a schedule; nearly always the first one has one
 
 
 class LiftedSpace:
@@ -74,8 +74,9 @@ class LiftedSpace:
         return frame.plan(task.ground.problem, links, plan.bindings.lines())
 
     def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:
-        """Objects for all variables with which there is a schedule, and the schedule; None if there are none."""
+        """Objects for all variables and a schedule with them, of several the shortest; None if there are none."""
         timed, world = self._task.ground.problem.timed, self._task.world
+        found: tuple[Bindings, Orderings] | None = None
         completions = plan.bindings.completions()
         for bindings in itertools.islice(completions, MAX_COMPLETIONS):
             try:
@@ -83,10 +84,13 @@ class LiftedSpace:
             except UnsettledError:
                 self._unsettled = True
                 continue
-            if orderings is not None:
-                return bindings, orderings
-        self._unsettled |= next(completions, None) is not None
-        return None
+            if orderings is not None and (found is None or _makespan(orderings) < _makespan(found[1])):
+                found = bindings, orderings
+            if found is not None and _makespan(found[1]) == _makespan(plan.orderings):
+                return found
+        if found is None:
+            self._unsettled |= next(completions, None) is not None
+        return found
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
         cell = plan.links
@@ -94,6 +98,10 @@ class LiftedSpace:
             producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
             yield Link(producer, _ground(cell.literal, bindings), consumer)
             cell = cell.rest
+
+
+def _makespan(orderings: Orderings) -> float:
+    return orderings.earliest()[GOAL]
 
 
 def _names(plan: LiftedPlan, bindings: Bindings) -> tuple[Fact, ...]:

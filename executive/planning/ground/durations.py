@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial, reduce
 from itertools import pairwise
@@ -31,11 +31,13 @@ FREE_NUMBERS = 3  # of a duration and a cost, as many as the domains at hand hav
 class TimeGrid:
     """The unit in which times are whole numbers, and the least time between dependent events.
 
-    With durations that are multiples of the tolerance the unit is the tolerance and the separation 1.
+    With durations that are multiples of the tolerance the unit is the tolerance and the separation 1. `widest_ns` is
+    the separation without times that cut it; 0: this one is.
     """
 
     unit_ns: int
     separation: int = 1
+    widest_ns: int = field(default=0, compare=False)
 
     @property
     def unit_s(self) -> float:
@@ -47,10 +49,11 @@ class TimeGrid:
         return int(units) * self.unit_ns / NS_PER_S
 
     def fits(self, times_s: Iterable[float]) -> bool:
-        """Whether times are multiples of the unit, and differ by the separation from the start and from each other."""
-        times_ns = [nanoseconds(time_s) for time_s in times_s]
-        apart = all(gap >= self.separation * self.unit_ns for gap in _gaps(times_ns))
-        return apart and all(time_ns % self.unit_ns == 0 for time_ns in times_ns)
+        """Whether times are multiples of the unit, and lead to this separation: no earlier ones have cut it."""
+        times_ns, separation_ns = [nanoseconds(time_s) for time_s in times_s], self.separation * self.unit_ns
+        widest_ns = self.widest_ns or separation_ns
+        on_grid = all(time_ns % self.unit_ns == 0 for time_ns in times_ns)
+        return on_grid and min([widest_ns, *_gaps(times_ns)]) == separation_ns
 
     def units(self, time_s: float) -> int:
         """The nearest multiple of the unit to a time."""
@@ -74,9 +77,9 @@ def time_grid(tolerance_s: float, ranges_ns: Iterable[Range], times_s: Iterable[
     tolerance_ns, times_ns = max(nanoseconds(tolerance_s), 1), [nanoseconds(time_s) for time_s in times_s]
     ends = {time_ns for bounds in ranges_ns for time_ns in bounds if time_ns}
     longest = [bounds[1] for bounds in ranges_ns if bounds[1]]
-    separation_ns = min([tolerance_ns, *longest, *_gaps(times_ns)])
+    widest_ns = min([tolerance_ns, *longest])
     unit_ns = math.gcd(tolerance_ns, *ends, *times_ns)
-    return TimeGrid(unit_ns, separation_ns // unit_ns)
+    return TimeGrid(unit_ns, min([widest_ns, *_gaps(times_ns)]) // unit_ns, widest_ns)
 
 
 def _gaps(times_ns: Iterable[int]) -> Iterator[int]:

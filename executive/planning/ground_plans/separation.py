@@ -15,10 +15,11 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.pddl.language import Action, And, Atom, Equal, Formula, Not, Or, Quantified, Typed
 from tailor.executive.planning.pddl.problem import TimedLiteral
-from tailor.executive.planning.structures.orderings import FIRST, Orderings
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 Pair = tuple[int, int]  # nodes, the first before the second
+Choices = list[tuple[Pair, bool]]  # orderings that were added, and whether their opposites are left to try
 MAX_REVISED = 200  # orderings added once more after a wrong choice: some milliseconds, nearly all plans need none
 Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
 Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
@@ -53,6 +54,8 @@ def separated(
 ) -> Orderings | None:
     """The orderings with more of them, so that interfering events are a tick apart at their earliest times.
 
+    Of several the ones with the least makespan, among as many as MAX_REVISED allows.
+
     Args:
       orderings: Of a plan without flaws: either order of two events that they do not relate is sound.
       names: The actions of the steps, in the order of their nodes.
@@ -69,23 +72,43 @@ def separated(
         return orderings
     events = _events(names, timed, world)
     network: TemporalNetwork | None = orderings
-    chosen: list[tuple[Pair, bool]] = []  # orderings that were added, and whether their opposites are left to try
+    shortest: TemporalNetwork | None = None
+    chosen: Choices = []
     revised = 0
-    while network is not None and (pair := _coincident(network, events)) is not None:
-        if (further := network.ordered(*pair)) is not None:
-            chosen.append((pair, True))
-        elif (further := network.ordered(pair[1], pair[0])) is not None:
-            chosen.append(((pair[1], pair[0]), False))
-        else:
-            further = _with_last_reversed(orderings, chosen)
-            revised += len(chosen)
-            if revised > MAX_REVISED:
+    while network is not None:
+        if shortest is None or _makespan(network) < _makespan(shortest):
+            pair = _coincident(network, events)
+            if pair is None:
+                shortest = network
+            elif (further := _with_pair(network, pair, chosen)) is not None:
+                network = further
+                continue
+        if shortest is not None and _makespan(shortest) == _makespan(orderings):
+            break
+        revised += len(chosen)
+        if revised > MAX_REVISED:
+            if shortest is None:
                 raise UnsettledError
-        network = further
-    return network
+            break
+        network = _with_last_reversed(orderings, chosen)
+    return shortest
 
 
-def _with_last_reversed(orderings: TemporalNetwork, chosen: list[tuple[Pair, bool]]) -> TemporalNetwork | None:
+def _makespan(network: TemporalNetwork) -> float:
+    return network.earliest()[GOAL]
+
+
+def _with_pair(network: TemporalNetwork, pair: Pair, chosen: Choices) -> TemporalNetwork | None:
+    """The orderings with one of two events before the other, in the order given if that fits; None if none does."""
+    a, b = pair
+    if (further := network.ordered(a, b)) is not None:
+        chosen.append(((a, b), True))
+    elif (further := network.ordered(b, a)) is not None:
+        chosen.append(((b, a), False))
+    return further
+
+
+def _with_last_reversed(orderings: TemporalNetwork, chosen: Choices) -> TemporalNetwork | None:
     """The orderings with the choices up to the last one whose opposite is left to try, reversed; None if none is."""
     while chosen:
         (a, b), is_open = chosen.pop()

@@ -113,6 +113,16 @@ def test_ground_actions_with_too_long_a_tick_are_made_anew():
         assert (result.plan is not None) == sound
 
 
+@pytest.mark.parametrize("time_s", ["0.004", "0.5"])
+def test_the_tick_does_not_depend_on_the_timed_literals_of_an_earlier_problem(time_s):
+    cache, acts = GroundCache(), [action("act", "(at start (not (r)))", "(at start (r)) (at end (g))")]
+    domain, earlier = task(acts, f"(at {time_s} (not (r)))", "(g)")
+    assert Search(domain, earlier, Settings(), cache).advance(_Unlimited()).plan is not None
+    _, later = task(acts, "", "(g)")
+    plan = Search(domain, later, Settings(), cache).advance(_Unlimited()).plan
+    assert plan.steps == solve(domain, later, Settings()).plan.steps
+
+
 class _Unlimited:
     granted = 0
 

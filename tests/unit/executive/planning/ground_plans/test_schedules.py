@@ -4,7 +4,8 @@ import itertools
 
 import pytest
 
-from tailor.executive.planning import Settings, parse_plan, validate
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import AnytimeSearch, Settings, parse_plan, validate
 from tailor.executive.planning.ground_plans import separation
 from tests.support.planning_problems import read, solve
 
@@ -71,3 +72,18 @@ def test_the_object_that_no_condition_determines_is_one_that_has_a_schedule(grou
     assert result.status == "solved"
     assert {step.action for step in result.plan.steps} == {("b", "o2"), ("c",)}
     assert validate(result.plan, domain, problem) == ""
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("goal", ["(p) (s)", "(s) (p)"])
+def test_of_several_schedules_the_shortest_is_proven_to_be_the_best(goal, ground):
+    domain, problem = read(
+        """(define (domain d) (:requirements :durative-actions) (:predicates (p) (r) (s))
+        (:durative-action long :parameters () :duration (= ?duration 2) :effect (and (at start (r)) (at start (p))))
+        (:action short :parameters () :effect (and (not (r)) (s))))""",
+        f"(define (problem x) (:domain d) (:init) (:goal (and {goal})))",
+    )
+    search = AnytimeSearch(domain, problem, Settings(tolerance_s=1, ground=ground))
+    while not search.ended:
+        search.advance(CheckBudget(100))
+    assert (search.ended, search.value) == ("proven", 3)  # long at 1, short at 2; not short at 1, long at 2
