@@ -8,8 +8,8 @@ from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.plans.schedule import scheduled_bounds
-from tailor.executive.planning.semantics.links import linking
+from tailor.executive.planning.plans.schedule import scheduled_bounds, scheduling
+from tailor.executive.planning.semantics.links import linking, orderings_for
 from tailor.executive.planning.semantics.state import MAX_PARTS, Objects, TooLargeError
 from tailor.executive.planning.semantics.suffix import relinking
 from tailor.executive.planning.semantics.validator import validation
@@ -19,7 +19,8 @@ def completed(plan: Plan, domain: Domain, problem: Problem) -> Plan | str:
     """The plan with a causal link for every condition.
 
     Existing links are kept. VHPOP omits links from static facts when it plans with ground actions: they are added,
-    each step's newest. A plan that lacks others, such as the plain form, is linked anew in the order of its steps.
+    each step's newest. A plan that lacks others, such as the plain form, or orderings that its links require, is linked
+    anew in the order of its steps.
 
     Args:
       plan: A parsed plan of any planner.
@@ -51,13 +52,25 @@ def _completion(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | str
     absent = [link for link in needed if (link.literal, link.consumer) not in supported]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
-    if located.steps != plan.steps or any(link.literal.fact[0] in changing for link in absent):
-        linked = yield from relinking(located, domain, objects)
-    else:
-        linked = replace(located, links=_by_consumer(located, (*absent, *plan.links)))
-    if linked is None:
-        return "its steps cannot be linked"
+    linked = replace(located, links=_by_consumer(located, (*absent, *plan.links)))
+    keeps = located.steps == plan.steps and not any(link.literal.fact[0] in changing for link in absent)
+    if not keeps or not (yield from _protects(linked, domain, objects)):
+        anew = yield from relinking(located, domain, objects)
+        if anew is None:
+            return "its steps cannot be linked"
+        linked = anew
     return linked if linked.bounds else replace(linked, bounds=scheduled_bounds(linked))
+
+
+def _protects(plan: Plan, domain: Domain, objects: Objects) -> Work[bool]:
+    """Whether the orderings of a plan without durations imply all that its links require."""
+    if plan.durative:
+        return True
+    steps = [step.id for step in plan.steps]
+    own = [(i, j) for i, j in plan.orderings if i in steps and j in steps]
+    _, implied = yield from scheduling(steps, own)
+    required = yield from orderings_for(plan, plan.links, domain, objects)
+    return set(implied).issuperset(required)
 
 
 def _located(plan: Plan, domain: Domain, problem: Problem) -> Plan:

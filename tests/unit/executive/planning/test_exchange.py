@@ -18,6 +18,7 @@ from tailor.executive.planning import (
     parse_plan,
     parse_problem,
     validate,
+    validate_every_order,
 )
 from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.semantics.links import linking
@@ -118,6 +119,19 @@ def test_a_link_that_is_neither_there_nor_static_makes_all_of_them_anew():
     linked = completed(replace(whole, links=whole.links[1:]), domain, problem)
     assert {(x.literal, x.consumer) for x in linked.links} >= {(x.literal, x.consumer) for x in whole.links}
     assert validate(linked, domain, problem) == ""
+
+
+def test_orderings_that_the_links_require_are_added():
+    domain, problem = read(
+        """(define (domain d) (:predicates (p) (q)) (:action make :parameters () :effect (p))
+        (:action undo :parameters () :effect (and (q) (not (p)))))""",
+        "(define (problem x) (:domain d) (:init) (:goal (and (p) (q))))",
+    )
+    text = "Step 1 : (undo)\nStep 2 : (make)\nGoal :\n  1 -> (q)\n  2 -> (p)\norderings = {{{}}}\n"
+    for printed_orderings in ("", " 1<2 "):
+        linked = completed(parse_plan(text.format(printed_orderings)), domain, problem)
+        assert linked.orderings == ((1, 2),)
+        assert validate_every_order(linked, domain, problem) == ""
 
 
 def test_an_unsound_plan_stays_out_and_the_reason_is_told():
