@@ -19,7 +19,6 @@ class ForwardEngine:
     def __init__(self, task: GroundTask, grounded: GroundActions, state_limit: int, step_limit: int) -> None:
         self._task = task
         self._world = grounded.world
-        self._limit = state_limit
         self._step_limit = step_limit
         self._search: ForwardSearch | None = None
         self._strips: StripsTask | None = None
@@ -66,7 +65,7 @@ class ForwardEngine:
             yield from self._finished(sequence, strips)
             return
         if search.limit_reached:
-            yield Result("limit", None, f"{self._limit} states evaluated", search.generated, search.visited)
+            yield Result("limit", None, search.limit_reached, search.generated, search.visited)
         else:
             reason = "no sequence of actions reaches the goal"
             yield Result("unsolvable", None, reason, search.generated, search.visited)
@@ -78,7 +77,7 @@ class ForwardEngine:
         from tailor.executive.planning.forward.finished_plan import finished_plan
         from tailor.executive.planning.forward.justification import justified
 
-        kept = justified(sequence, strips)
+        kept = yield from justified(sequence, strips)
         yield None
         if len(kept) > self._step_limit:
             yield Result("limit", None, f"no plan of up to {self._step_limit} steps", self.generated, self.visited)

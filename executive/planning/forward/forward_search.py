@@ -7,12 +7,14 @@ turns, one for the helpful actions, which is preferred after progress.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 
 from tailor.executive.planning.forward.relaxed_plans import RelaxedPlans
 from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask
 
+PORTION = 2000  # states: some milliseconds
+MAX_ENTRIES = 4_000_000  # of the queues, some 110 bytes each: half a gigabyte
 BOOST = 1000  # turns that the helpful actions gain by each progress
 
 Entry = tuple[int, int, int, int]  # estimate of the parent, age, number of the parent, index of the action
@@ -39,7 +41,7 @@ class ForwardSearch:
         self._best = 1 << 60  # shortest relaxed plan so far
         self.generated = 0
         self.visited = 0
-        self.limit_reached = False
+        self.limit_reached = ""  # why the search ended early
 
     @property
     def expected_steps(self) -> int:
@@ -59,11 +61,14 @@ class ForwardSearch:
                 yield self._sequence(parent, action)
                 return
             if self.visited >= self._limit:
-                self.limit_reached = True
+                self.limit_reached = f"{self._limit} states evaluated"
+                return
+            if sum(len(queue.entries) for queue in self._queues) > MAX_ENTRIES:
+                self.limit_reached = "the queued states take too much memory"
                 return
             self._evaluate(state, parent, action)
             yield None
-            following = self._next()
+            following = yield from self._next()
 
     def _evaluate(self, state: int, parent: int, action: int) -> None:
         """Estimates a state and queues its successors, which are not yet computed."""
@@ -82,9 +87,16 @@ class ForwardSearch:
                 heapq.heappush(queue.entries, (estimate.length, self.generated, number, index))
                 self.generated += 1
 
-    def _next(self) -> tuple[int, int, int] | None:
-        """A state that has not been evaluated, with its parent and action; None if there are no more."""
+    def _next(self) -> Generator[None, None, tuple[int, int, int] | None]:
+        """A state that has not been evaluated, with its parent and action; None if there are no more.
+
+        Yields after every PORTION of states that have been: a large state has thousands of ways to the same others.
+        """
+        passed = 0
         while waiting := [queue for queue in self._queues if queue.entries]:
+            passed += 1
+            if not passed % PORTION:
+                yield
             queue = min(waiting, key=lambda queue: queue.turns)
             queue.turns += 1
             _, _, parent, action = heapq.heappop(queue.entries)

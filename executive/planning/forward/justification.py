@@ -6,16 +6,22 @@ later ones that lose a condition by that, if the rest still reaches the goal.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 
 from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask
 
+PORTION = 20_000  # some ten milliseconds; a sequence of 200 actions takes one portion
 
-def justified(sequence: Sequence[StripsAction], strips: StripsTask) -> list[StripsAction]:
-    """The sequence without unnecessary actions, in the same order."""
+
+def justified(sequence: Sequence[StripsAction], strips: StripsTask) -> Generator[None, None, list[StripsAction]]:
+    """The sequence without unnecessary actions, in the same order; yields after every PORTION of actions tried."""
     kept = list(sequence)
-    first, state = 0, strips.initial
+    first, state, tried = 0, strips.initial, 0
     while first < len(kept):
+        tried += len(kept) - first
+        if tried > PORTION:
+            tried = 0
+            yield
         rest = _without_first(kept[first:], state, strips.goal_mask)
         if rest is None:
             state = kept[first].after(state)

@@ -4,6 +4,8 @@ import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import GOAL, Search, Settings, format_links, validate
+from tailor.executive.planning.forward import forward_search, justification
+from tailor.executive.planning.forward.strips_task import StripsAction
 from tests.support.planning_problems import OWN, many_cups, own, read, solve
 
 FORWARD = Settings(engine="forward")
@@ -153,3 +155,40 @@ def test_costs_that_double_from_level_to_level_fill_no_memory_and_are_no_proof(e
 
 def test_costs_beyond_all_floats_are_no_proof():
     assert solve(*doubling(1100), Settings(engine="pocl", step_limit=10)).status == "limit"
+
+
+WIDE = """(define (domain wide) (:predicates (p ?x ?y) (g ?x)) (:action a :parameters (?x ?y) :effect (p ?x ?y))
+  (:action b :parameters (?x) :precondition (forall (?y) (p ?x ?y)) :effect (g ?x)))"""
+
+
+def wide(count):
+    """A problem of count ** 2 + count steps in any order."""
+    objects = [f"o{n}" for n in range(count)]
+    goal = " ".join(f"(g {name})" for name in objects)
+    return read(WIDE, f"(define (problem x) (:domain wide) (:objects {' '.join(objects)}) (:goal (and {goal})))")
+
+
+def test_a_long_sequence_is_shortened_in_portions(monkeypatch):
+    tried, before_check, real = [0], [], StripsAction.applies
+
+    def counted(action, state):
+        tried[0] += 1
+        return real(action, state)
+
+    class MeteredBudget(CheckBudget):
+        def spent(self):
+            before_check.append(tried[0])
+            tried[0] = 0
+            return super().spent()
+
+    monkeypatch.setattr(StripsAction, "applies", counted)
+    result = Search(*wide(16), FORWARD).advance(MeteredBudget(10**9))
+    assert result.reason == "no plan of up to 200 steps"
+    assert sum(before_check) > 30_000
+    assert max(before_check) <= justification.PORTION
+
+
+def test_states_that_wait_do_not_fill_the_memory(monkeypatch):
+    monkeypatch.setattr(forward_search, "MAX_ENTRIES", 2000)
+    result = solve(*wide(8), FORWARD)
+    assert (result.status, result.reason) == ("limit", "the queued states take too much memory")
