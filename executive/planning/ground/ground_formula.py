@@ -57,6 +57,11 @@ class GroundingLimit:
         self.depth = 0
         self.subject = subject
 
+    @property
+    def used(self) -> int:
+        """The steps spent so far."""
+        return self._steps - self._left
+
     def spend(self, steps: int = 1) -> None:
         """Counts as many more steps.
 

@@ -36,6 +36,7 @@ MAX_BINDINGS = 4096  # tried exhaustively: 10 ms; the executive's domains try so
 MAX_EXHAUSTIVE_STEPS = 60_000  # a third of a second
 MAX_BYTES = 250_000_000  # of the ground actions; half of what a planner may take
 BYTES_PER_ACTION, BYTES_PER_PART = 600, 150  # roughly; a part is a condition or an effect
+MAX_UNCHECKED = 4096  # steps of grounding, or a little more, between two units: tens of milliseconds
 CHECK_EVERY = 64  # bindings tried per unit of budget: about a tenth of a millisecond
 
 
@@ -138,7 +139,7 @@ def _exhaustive(
 ) -> Iterator[GroundActions | None]:
     """Yields None every CHECK_EVERY bindings; raises _TooManyBindings if there are more than `most`."""
     maker = _Maker(world, limit)
-    tried = 0
+    tried = before = 0
     for schema in sorted(world.domain.actions, key=lambda action: action.name):
         limit.subject = f"'{schema.name}'"
         for binding in schema_bindings(schema, world):
@@ -146,10 +147,14 @@ def _exhaustive(
             if tried > most:
                 raise _TooManyBindings
             if tried % CHECK_EVERY == 0:
+                before = limit.used
                 yield None
             if binding is not None:
                 limit.spend(INSTANCE_STEPS)
                 maker.add(schema, binding)
+                if limit.used - before > MAX_UNCHECKED:
+                    before = limit.used
+                    yield None
     yield maker.result(problem, tolerance_s, None)
 
 
@@ -163,8 +168,10 @@ def _reachable(
         tested = without_static(schema, world)
         own = reached.arguments[schema.name]
         limit.subject = f"'{schema.name}' with {len(own)} reachable bindings"
+        before = limit.used
         for number, arguments in enumerate(own, 1):
-            if number % CHECK_EVERY == 0:
+            if number % CHECK_EVERY == 0 or limit.used - before > MAX_UNCHECKED:
+                before = limit.used
                 yield None
             maker.add(tested, dict(zip(names, arguments, strict=True)))
     yield maker.result(problem, tolerance_s, reached.facts)

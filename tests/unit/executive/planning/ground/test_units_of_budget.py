@@ -1,0 +1,37 @@
+"""Grounding checks the budget after so much work, not only after so many bindings of an action."""
+
+import pytest
+
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import Search, Settings
+from tailor.executive.planning.ground import grounding
+from tailor.executive.planning.ground.ground_formula import GroundingLimit
+from tests.support.planning_problems import read
+
+DOMAIN = """(define (domain d) (:predicates (p ?x ?y ?z) (g ?x)) (:action make :parameters (?x) :effect (p ?x ?x ?x))
+  (:action use :parameters (?x) :precondition (forall (?y ?z) (not (p ?x ?y ?z))) :effect (g ?x)))"""
+INSTANCE = 30**2  # steps of grounding that one action takes
+
+
+@pytest.mark.parametrize("bindings", [grounding.MAX_BINDINGS, 0], ids=["all", "reachable"])
+def test_quantified_conditions_are_ground_in_several_units_of_the_budget(monkeypatch, bindings):
+    monkeypatch.setattr(grounding, "MAX_BINDINGS", bindings)
+    spent, before_check, real = [0], [], GroundingLimit.spend
+
+    def counted(limit, steps=1):
+        spent[0] += steps
+        real(limit, steps)
+
+    class MeteredBudget(CheckBudget):
+        def spent(self):
+            before_check.append(spent[0])
+            spent[0] = 0
+            return super().spent()
+
+    monkeypatch.setattr(GroundingLimit, "spend", counted)
+    objects = " ".join(f"o{n}" for n in range(30))
+    domain, problem = read(DOMAIN, f"(define (problem x) (:domain d) (:objects {objects}) (:goal (g o0)))")
+    result = Search(domain, problem, Settings(engine="forward", node_limit=1)).advance(MeteredBudget(10**9))
+    assert result is not None
+    assert sum(before_check) > 30 * INSTANCE
+    assert max(before_check) < grounding.MAX_UNCHECKED + 2 * INSTANCE
