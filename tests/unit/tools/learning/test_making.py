@@ -68,7 +68,7 @@ def test_models_of_random_episodes_choose_those_of_uncertain_success(
     tmp_path: Path, trained: list, monkeypatch
 ) -> None:
     chosen = []
-    monkeypatch.setattr(episodes, "run_uncertain", lambda each, jobs: iter(chosen.append(each) or ()))
+    monkeypatch.setattr(episodes, "run_uncertain", lambda sets, jobs: iter(chosen.extend(sets) or ()))
     recipe = replace(TINY, beside=20, uncertain=(UncertainEpisodes("approachBall", 4, 5),))
     list(make(Making("agilo", recipe, tmp_path, 1, "make")))
     (each,) = chosen
