@@ -15,7 +15,7 @@ from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimate
 from tailor.executive.planning.ground_plans.separation import UnsettledError
 from tailor.executive.planning.ground_plans.threats import refine_threat
 from tailor.executive.planning.plans.plan import Plan
-from tailor.executive.planning.results import KEEPS_TO_ONE, UNSETTLED
+from tailor.executive.planning.results import search_gap
 from tailor.executive.planning.settings import Settings, rankings_for
 from tailor.executive.planning.structures.random_source import RandomSource
 
@@ -47,9 +47,7 @@ class GroundSpace:
 
     def gap(self) -> str:
         """See `PlanSpace`."""
-        if self._task.has_alternatives_over_all():
-            return KEEPS_TO_ONE
-        return UNSETTLED if self._unsettled else ""
+        return search_gap(self._task.has_alternatives_over_all(), self._unsettled)
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """See `PlanSpace`; a plan without flaws or schedule has no refinements."""

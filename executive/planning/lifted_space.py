@@ -10,7 +10,7 @@ from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground_plans.extraction import Frame
-from tailor.executive.planning.ground_plans.separation import UnsettledError, separated
+from tailor.executive.planning.ground_plans.separation import UnsettledError, makespan, separated
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
@@ -20,9 +20,9 @@ from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import Link, Plan
-from tailor.executive.planning.results import KEEPS_TO_ONE, UNSETTLED
+from tailor.executive.planning.results import search_gap
 from tailor.executive.planning.settings import Settings, rankings_for
-from tailor.executive.planning.structures.orderings import GOAL, Orderings
+from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
 
 MAX_COMPLETIONS = 10  # tried for a schedule; nearly always the first one has one
@@ -49,9 +49,7 @@ class LiftedSpace:
 
     def gap(self) -> str:
         """See `PlanSpace`."""
-        if self._task.ground.has_alternatives_over_all():
-            return KEEPS_TO_ONE
-        return UNSETTLED if self._unsettled else ""
+        return search_gap(self._task.ground.has_alternatives_over_all(), self._unsettled)
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
@@ -84,9 +82,9 @@ class LiftedSpace:
             except UnsettledError:
                 self._unsettled = True
                 continue
-            if orderings is not None and (found is None or _makespan(orderings) < _makespan(found[1])):
+            if orderings is not None and (found is None or makespan(orderings) < makespan(found[1])):
                 found = bindings, orderings
-            if found is not None and _makespan(found[1]) == _makespan(plan.orderings):
+            if found is not None and makespan(found[1]) == makespan(plan.orderings):
                 return found
         if found is None:
             self._unsettled |= next(completions, None) is not None
@@ -98,10 +96,6 @@ class LiftedSpace:
             producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
             yield Link(producer, _ground(cell.literal, bindings), consumer)
             cell = cell.rest
-
-
-def _makespan(orderings: Orderings) -> float:
-    return orderings.earliest()[GOAL]
 
 
 def _names(plan: LiftedPlan, bindings: Bindings) -> tuple[Fact, ...]:

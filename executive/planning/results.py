@@ -8,6 +8,13 @@ KEEPS_TO_ONE = "the search is exhausted, but of a condition over all with altern
 UNSETTLED = "the search is exhausted, but for some plan it gave up to look for a schedule without interference"
 
 
+def search_gap(keeps_to_one: bool, unsettled: bool) -> str:
+    """Why an empty search space is no proof; "" if it is one."""
+    if keeps_to_one:
+        return KEEPS_TO_ONE
+    return UNSETTLED if unsettled else ""
+
+
 def goal_unreachable() -> Result:
     """Proof without a search: the relaxed planning graph does not reach the goal."""
     return Result("unsolvable", None, "the goal cannot be reached, not even without delete effects", 1, 0)

@@ -63,10 +63,15 @@ def no_service(key: str) -> str:
     return f"no service at {key}"
 
 
+def text_of(payload: Any) -> str:
+    """A request or response, of whatever process: bytes that are no UTF-8 are replaced."""
+    return str(payload.to_bytes().decode(errors="replace"))
+
+
 def text_request(query: Any) -> ServiceRequest:
     """The request in a query whose payload is text; the response is text as well."""
     payload = query.payload
-    text = "" if payload is None else payload.to_bytes().decode(errors="replace")
+    text = "" if payload is None else text_of(payload)
 
     def respond(accepted: bool, response: str) -> None:
         sent = response.encode(errors="backslashreplace")  # half a character, as JSON may name one, is no text

@@ -17,7 +17,7 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
-from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, no_service, text_request
+from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, no_service, text_of, text_request
 from tailor.runtime.bus.wires import MAX_PLAIN_BYTES, RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
@@ -215,8 +215,8 @@ class Session:
         sent = text.encode(errors="backslashreplace")  # a word of a command line need not be text
         for reply in self._zenoh.get(key, payload=sent, timeout=timeout_s):
             if reply.ok is not None:
-                return True, _text(reply.ok.payload)
-            error = "" if reply.err is None else _text(reply.err.payload)
+                return True, text_of(reply.ok.payload)
+            error = "" if reply.err is None else text_of(reply.err.payload)
             return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
         return False, no_service(key)
 
@@ -241,11 +241,6 @@ class Session:
             patterns.append(f"{self.keys.domain}/{pattern}/*/*")  # any type and hash; `as_plain` compares them
         handler: Any = zenoh.handlers.Callback(put, indirect=False)
         return filled, Subscriptions([self._zenoh.declare_subscriber(each, handler) for each in patterns])
-
-
-def _text(payload: Any) -> str:
-    """A response, of whatever process: bytes that are no UTF-8 are replaced."""
-    return str(payload.to_bytes().decode(errors="replace"))
 
 
 def _is_one_key(key: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tailor.tools.learning.gathering.options import POOL, UNCERTAIN_POOL
+from tailor.tools.learning.gather_options import POOL, UNCERTAIN_POOL
 
 MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
 

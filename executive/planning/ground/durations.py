@@ -20,9 +20,9 @@ from tailor.executive.planning.pddl.language import (
     Operation,
     numbers_in,
 )
+from tailor.executive.planning.pddl.times import NS_PER_S, exact, nanoseconds
 
 Range = tuple[int, int | None]  # shortest and longest duration, None without an upper limit
-NS_PER_S = 10**9
 MAX_NUMBER = 10**9  # seconds, and the cost of an action: as numbers in PDDL text; plans stay below UNBOUNDED
 FREE_NUMBERS = 3  # of a duration and a cost, as many as the domains at hand have
 
@@ -85,16 +85,6 @@ def time_grid(tolerance_s: float, ranges_ns: Iterable[Range], times_s: Iterable[
 def _gaps(times_ns: Iterable[int]) -> Iterator[int]:
     """The differences between the start and the given times, those of equal times left out."""
     return (later - earlier for earlier, later in pairwise(sorted({0, *times_ns})))
-
-
-def exact(value: float) -> Fraction:
-    """The decimal number that a float was read from."""
-    return Fraction(repr(value))
-
-
-def nanoseconds(time_s: float) -> int:
-    """A time in whole nanoseconds."""
-    return round(exact(time_s) * NS_PER_S)
 
 
 def evaluate(number: Numeric, binding: Binding, world: StaticWorld) -> Fraction | None:

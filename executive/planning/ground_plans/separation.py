@@ -76,14 +76,14 @@ def separated(
     chosen: Choices = []
     revised = 0
     while network is not None:
-        if shortest is None or _makespan(network) < _makespan(shortest):
+        if shortest is None or makespan(network) < makespan(shortest):
             pair = _coincident(network, events)
             if pair is None:
                 shortest = network
             elif (further := _with_pair(network, pair, chosen)) is not None:
                 network = further
                 continue
-        if shortest is not None and _makespan(shortest) == _makespan(orderings):
+        if shortest is not None and makespan(shortest) == makespan(orderings):
             break
         revised += len(chosen)
         if revised > MAX_REVISED:
@@ -94,8 +94,9 @@ def separated(
     return shortest
 
 
-def _makespan(network: TemporalNetwork) -> float:
-    return network.earliest()[GOAL]
+def makespan(orderings: Orderings) -> float:
+    """The earliest time of the goal."""
+    return orderings.earliest()[GOAL]
 
 
 def _with_pair(network: TemporalNetwork, pair: Pair, chosen: Choices) -> TemporalNetwork | None:

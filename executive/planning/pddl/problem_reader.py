@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from typing import Literal as OneOf
 
 from tailor.executive.interfaces.values import Fact
@@ -22,10 +21,10 @@ from tailor.executive.planning.pddl.syntax.s_expressions import (
     text_of,
     word_of,
 )
+from tailor.executive.planning.pddl.times import NANOSECOND_S, nanoseconds
 from tailor.executive.planning.pddl.typed_lists import MAX_OBJECTS, read_typed
 
 MAX_TIMED = 200  # each is a node of every temporal network
-NANOSECOND_S = 1e-9  # times are whole nanoseconds; a literal at time 0 is one of the initial state
 _METRICS: dict[str, OneOf["makespan", "cost"]] = {
     "total-time": "makespan",
     "makespan": "makespan",
@@ -130,19 +129,15 @@ def _read_initial(form: Form, draft: _Draft, scope: Scope) -> None:
         if len(draft.timed) == MAX_TIMED:
             raise form.place.error(f"more than {MAX_TIMED} timed literals")
         literal = _literal(form_of(form.items[2], "a literal"), scope)
-        opposite, time_ns = replace(literal, positive=not literal.positive), _nanoseconds(time_s)
-        if any(other.literal == opposite and _nanoseconds(other.time_s) == time_ns for other in draft.timed):
+        opposite, time_ns = replace(literal, positive=not literal.positive), nanoseconds(time_s)
+        if any(other.literal == opposite and nanoseconds(other.time_s) == time_ns for other in draft.timed):
             raise form.place.error(f"{literal} and its opposite at the same time")
-        if time_s < NANOSECOND_S:
+        if time_s < NANOSECOND_S:  # a literal at time 0 is one of the initial state
             _enter(literal, draft, form.place)
         else:
             draft.timed.append(TimedLiteral(time_s, literal))
     else:
         _enter(_literal(form, scope), draft, form.place)
-
-
-def _nanoseconds(time_s: float) -> int:
-    return round(Fraction(repr(time_s)) * 10**9)
 
 
 def _enter(literal: Literal, draft: _Draft, place: Place) -> None:

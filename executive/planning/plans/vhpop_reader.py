@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.pddl.times import NANOSECOND_S
 from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.schedule import levels
 from tailor.schemas.errors import UsageError
@@ -14,7 +15,6 @@ from tailor.schemas.errors import UsageError
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
 MAX_STEPS = 200  # as many as our own plans may have
-NANOSECOND_S = 1e-9  # times are whole nanoseconds
 MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")

@@ -12,7 +12,8 @@ from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.checks.package_check import check_package
-from tailor.tools.learning.gathering import options, random_episodes
+from tailor.tools.learning import gather_options as options
+from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.progress import gathered, note, shown
 from tailor.tools.lockstep.bodies import check_profile
