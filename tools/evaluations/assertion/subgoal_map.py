@@ -15,7 +15,7 @@ from tailor.executive.deliberation.context import Context
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.messages import Contexts, Subgoals
-from tailor.tools.viewer.explanations.explanation import chosen_values, sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import chosen_values, sequence_of
 
 Array = NDArray[np.float64]
 

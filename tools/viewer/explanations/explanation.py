@@ -11,18 +11,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.action_context import ContextRows
+from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.alternatives import Alternatives, alternatives
-from tailor.executive.refinement.greedy import greedy
+from tailor.executive.refinement.greedy import GreedySearch, greedy
 from tailor.executive.refinement.objective.objective import SequenceObjective
-from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction, Variable
+from tailor.executive.refinement.objective.sequence import ActionSequence, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas import messages as m
+from tailor.tools.viewer.explanations.decided_sequence import accepted, chosen_values, objective_of, sequence_of
 from tailor.tools.viewer.explanations.situation import Situation, situations_of
 
-MAX_ID = 4096  # of a variable; a message has no room for as many
+GREEDY_CHECKS = 500  # of each action; the search ends by itself long before
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ def explain(
 ) -> Explanation | None:
     """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
 
-    The greedy choice is searched anew with the executive's own solver, from `rng`. `objects` are those of the decision
+    The greedy choice is searched anew from `rng`. `objects` are those of the decision
     if they were published in the same tick.
     """
     sequence = sequence_of(message, library, objects)
@@ -73,10 +74,10 @@ def explain(
     settings = replace(settings, horizon=min(message.horizon, len(sequence.actions)))
     chosen = chosen_values(message)
     sequence = accepted(sequence, chosen, models, settings)
-    objective = _objective(sequence, models, settings)
+    objective = objective_of(sequence, models, settings)
     if not objective.ids:
         return None
-    alone = greedy(sequence, models, settings, rng).values
+    alone = greedy_values(sequence, models, settings, rng)
     picked, lone = both = objective.vectors([chosen, alone])
     predictions = objective.predict(both)
     chosen_s, greedy_s = np.transpose([prediction.duration_s for prediction in predictions]).tolist()
@@ -95,73 +96,18 @@ def explain(
     )
 
 
-def sequence_of(
-    message: m.Subgoals, library: Mapping[str, Action], objects: m.Contexts | None = None
-) -> ActionSequence | None:
-    """The instantiated sequence that the message reports; None if it does not fit the actions of the library."""
-    if not message.actions or not all(_fits(a, library) for a in message.actions):
-        return None
-    table: dict[int, Variable] = {}
-    for instance in message.actions:
-        for declared, parameter in zip(library[instance.action].parameters, instance.parameters, strict=True):
-            wide = parameter.upper - parameter.lower >= declared.upper - declared.lower
-            table[parameter.id] = Variable(
-                parameter.id,
-                parameter.label,
-                declared.quantity,
-                declared.unit,
-                parameter.lower,
-                parameter.upper,
-                declared.periodic and wide,
-                parameter.value if parameter.bound else None,
-            )
-    unused = Variable(
-        0, "", "", "", 0.0, 0.0, False, 0.0
-    )  # ids have gaps where an asserted subgoal replaced a variable
-    variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
-    contexts = _rows_by_action(objects) if objects is not None and objects.tick == message.tick else {}
-    actions = tuple(
-        InstantiatedAction(
-            library[a.action],
-            a.step,
-            tuple(p.id for p in a.parameters),
-            a.asserted,
-            context=contexts.get(a.action, ()),
-        )
-        for a in message.actions
-    )
-    return ActionSequence(actions, variables, library, contexts=contexts)
+def greedy_values(
+    sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator
+) -> dict[int, float]:
+    """The greedy choice, searched as far as a run with a horizon of one does.
 
-
-def _fits(instance: m.InstantiatedAction, library: Mapping[str, Action]) -> bool:
-    """Whether an action is known and has its parameters; a damaged message has anything."""
-    ids = [parameter.id for parameter in instance.parameters]
-    known = instance.action in library and len(ids) == len(library[instance.action].parameters)
-    return known and all(0 <= each <= MAX_ID for each in ids)
-
-
-def _rows_by_action(objects: m.Contexts) -> dict[str, ContextRows]:
-    """Rows of the objects near each action, by its name."""
-    return {each.action: each.rows for each in objects.contexts if each.columns}
-
-
-def _objective(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:
-    return SequenceObjective(sequence.within(settings.horizon), sequence.variables, models, settings)
-
-
-def chosen_values(message: m.Subgoals) -> dict[int, float]:
-    """The values that were chosen for the free parameters, by variable id."""
-    return {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
-
-
-def accepted(
-    sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
-) -> ActionSequence:
-    """The sequence with every risk allowed if the choice needs it: risks that were accepted are not in the message."""
-    objective = _objective(sequence, models, settings)
-    if np.isfinite(objective(objective.vector(chosen)[None]))[0]:
-        return sequence
-    return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
+    Against the executive's hasty first answer, refinement would seem to gain more.
+    """
+    search = GreedySearch(sequence, models, settings, rng, start=greedy(sequence, models, settings, rng).values)
+    while not search.finished:
+        search.advance_action(CheckBudget(GREEDY_CHECKS))
+        search.end_action()
+    return search.values
 
 
 def _parameters(

@@ -13,7 +13,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import Contexts, Subgoals
-from tailor.tools.viewer.explanations.explanation import accepted, chosen_values, sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import accepted, chosen_values, sequence_of
 
 CHECKS = 1500  # live, a decision has some 100 to 300
 

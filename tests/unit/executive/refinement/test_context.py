@@ -19,7 +19,7 @@ from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas import messages as m
 from tailor.schemas.errors import UsageError
-from tailor.tools.viewer.explanations.explanation import sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import sequence_of
 from tests.support.random_trees import Trees
 from tests.support.synthetic_models import DRIBBLE, MODELS, ConeSuccess, sequence
 from tests.unit.executive.refinement.synthetic_context import (

@@ -16,7 +16,8 @@ from tailor.schemas.messages import Subgoals
 from tailor.tools.figures.alternatives import draw_alternatives
 from tailor.tools.viewer.explainer import Explainer, fields_of
 from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text
-from tailor.tools.viewer.explanations.explanation import explain, sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import sequence_of
+from tailor.tools.viewer.explanations.explanation import explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
 from tailor.tools.viewer.explanations.situation import Situation
 from tests.support import synthetic_run
@@ -28,9 +29,13 @@ SETTINGS = replace(synthetic_run.SETTINGS, gain_k_std=0.0)  # the optimum, howev
 @pytest.fixture(scope="module")
 def refined():
     sequence = approach_dribble(robot=(-1.2, -0.6, 2.4))
-    search = Refinement(sequence, MODELS, SETTINGS, np.random.default_rng(3))
+    return sequence, chosen(sequence, SETTINGS)
+
+
+def chosen(sequence, settings):
+    search = Refinement(sequence, MODELS, settings, np.random.default_rng(3))
     search.advance(CheckBudget(60))
-    return sequence, search.choice
+    return search.choice
 
 
 def message_of(sequence, choice) -> Subgoals:
@@ -59,6 +64,13 @@ def test_greedy_makes_the_first_action_shorter_and_the_whole_longer(refined) -> 
     explanation = explained(message_of(*refined))
     assert explanation.greedy_s[0] < explanation.chosen_s[0]
     assert sum(explanation.greedy_s) > sum(explanation.chosen_s)
+
+
+def test_greedy_is_what_a_run_with_a_horizon_of_one_chooses_not_its_first_answer() -> None:
+    sequence = approach_dribble(robot=(2.0, 0.0, -2.0))
+    both, lone = (chosen(sequence, replace(SETTINGS, horizon=horizon)) for horizon in (2, 1))
+    explanation = explained(message_of(sequence, both))
+    assert explanation.greedy_s[0] == pytest.approx(lone.predicted_s[0], rel=0.01)
 
 
 def test_alternatives_cover_the_range_and_name_the_actions_that_they_touch(refined) -> None:
