@@ -68,5 +68,6 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
         count_both_ways(axis)
     else:
         axis.set_ylabel("time [s]", fontsize="small")
+        axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.yaxis.set_major_locator(MaxNLocator(4))
     axis.tick_params(labelsize="x-small")

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.figures.paths import COLOURS, across, corners, draw_goals, limits_of
+from tailor.tools.figures.paths import COLOURS, across, corners, draw_goals, limits_of, size_in
 from tailor.tools.figures.track import Track, TrackPoint
 
 SUFFIXES = (".gif", ".webp", ".apng")
@@ -84,7 +84,7 @@ def move_paths(tracks: Sequence[Track], path: Path, frames_per_s: int = FRAMES_P
       UsageError: A run takes too long, or its times go backward.
     """
     longest_s = max(map(_seconds, tracks))
-    figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained", dpi=DOTS_PER_INCH)
+    figure = Figure(figsize=size_in(tracks), layout="constrained", dpi=DOTS_PER_INCH)
     limits = limits_of(tracks)
     paths = []
     for axis, track in zip(figure.subplots(1, len(tracks), squeeze=False)[0], tracks, strict=True):

@@ -13,15 +13,16 @@ from matplotlib.figure import Figure
 from tailor.tools.figures.track import Track, TrackPoint
 from tailor.tools.scenes.flat import Outline
 
-COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd")
+COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf")  # one for each in the legend
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
 SCALE_MPS = 0.5
-LABELLED = 7  # actions in the legend; a run that fails may repeat its last one many times
+LABELLED = len(COLOURS)  # actions in the legend; a run that fails may repeat its last one many times
+PANEL_IN, HIGHEST_IN, FRAME_IN = 4.4, 6.4, 1.7  # width of a field, its greatest height, and what title and legend take
 
 
 def draw_paths(tracks: list[Track], path: Path) -> None:
     """Draw the runs side by side, to the same scale, into a PNG."""
-    figure = Figure(figsize=(5.2 * len(tracks), 5.4), layout="constrained")
+    figure = Figure(figsize=size_in(tracks), layout="constrained")
     axes = figure.subplots(1, len(tracks), squeeze=False)[0]
     draw_side_by_side(axes, tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -117,6 +118,12 @@ def draw_goals(axis: Any, track: Track) -> None:
             dx, dy = 0.3 * math.cos(goal.phi), 0.3 * math.sin(goal.phi)
             axis.arrow(x, y, dx, dy, length_includes_head=True, **style)
         axis.plot([x], [y], marker="+" if goal.free else "*", color=colour, zorder=4)
+
+
+def size_in(tracks: Sequence[Track]) -> tuple[float, float]:
+    """Width and height of a picture of runs side by side, in inches: as flat as the field that they cover."""
+    (left, right), (low, high) = limits_of(tracks)
+    return (PANEL_IN + 0.8) * len(tracks), min(PANEL_IN * (high - low) / (right - left), HIGHEST_IN) + FRAME_IN
 
 
 def limits_of(tracks: Sequence[Track]) -> tuple[tuple[float, float], tuple[float, float]]:

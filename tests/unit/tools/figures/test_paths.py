@@ -1,10 +1,11 @@
-"""Still pictures of runs: a legend that a run of many actions does not fill."""
+"""Still pictures of runs: as flat as the run, with a legend that a run of many actions does not fill."""
 
 from __future__ import annotations
 
+import pytest
 from matplotlib.figure import Figure
 
-from tailor.tools.figures.paths import LABELLED, draw_path
+from tailor.tools.figures.paths import HIGHEST_IN, LABELLED, PANEL_IN, draw_path, size_in
 from tailor.tools.figures.track import Track, TrackPoint
 
 
@@ -25,3 +26,13 @@ def test_a_run_without_motion_has_no_legend() -> None:
     axis = Figure().subplots()
     draw_path(axis, Track("run", []))
     assert axis.get_legend() is None
+
+
+@pytest.mark.parametrize(
+    ("wide_m", "high_m", "of_panel"), [(3.0, 1.0, 0.5), (1.0, 1.0, 1.0), (1.0, 9.0, HIGHEST_IN / PANEL_IN)]
+)
+def test_a_flat_run_makes_a_flat_picture_and_a_steep_one_ends(wide_m: float, high_m: float, of_panel: float) -> None:
+    points = [TrackPoint(t, t * wide_m, t * high_m, 0.0, 1.0, {}, 0, "go") for t in (0.0, 1.0)]
+    still = [TrackPoint(0.0, 0.0, 0.0, 0.0, 1.0, {}, 0, "go")] * 2
+    height = size_in([Track("run", points)])[1] - size_in([Track("still", still)])[1]
+    assert height == pytest.approx(PANEL_IN * (of_panel - 1.0))
