@@ -5,6 +5,7 @@
 
 import gc
 import os
+import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -12,6 +13,8 @@ from hypothesis import HealthCheck, settings
 pytest_plugins = ["tests.support.safety.promises"]
 # On busy cores the threads of scikit-learn spin while they wait for one another: 22 s of CPU for what takes 5.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # `make test &` in a script: what tests start would ignore Ctrl-C
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onnxruntime before tailor.models
 
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
