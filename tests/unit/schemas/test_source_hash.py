@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import pytest
 
-from tailor.schemas.installed import source
+from tailor.schemas.installed import source, source_text
 from tailor.schemas.installed.source import episodes_sha256, learning_sha256, runs_sha256
 from tailor.schemas.installed.source_text import code_text, content_sha256
 from tailor.schemas.packages.spec import DomainSpec
@@ -21,6 +21,15 @@ def test_words_and_layout_do_not_count(same):
 @pytest.mark.parametrize("other", [CODE.replace("+", "-"), CODE.replace("1", "1.0"), CODE.replace("(x)", "(x=0)")])
 def test_every_change_of_behaviour_counts(other):
     assert code_text(other) != code_text(CODE)
+
+
+MEANING = lru_cache(maxsize=None)(code_text)
+
+
+@pytest.fixture(autouse=True)
+def _each_file_is_parsed_once(monkeypatch):
+    """Two hashes of a test differ in one file; to parse the other 500 again takes a second."""
+    monkeypatch.setattr(source_text, "code_text", MEANING)
 
 
 @lru_cache(maxsize=1)
