@@ -13,7 +13,7 @@ from tailor.models.training.learners import make_learner
 
 @pytest.fixture(autouse=True)
 def brief(monkeypatch) -> None:
-    monkeypatch.setattr(network_training, "STEPS", 1500)
+    monkeypatch.setattr(network_training, "STEPS", 600)
 
 
 def smooth(count: int, seed: int):

@@ -1,6 +1,7 @@
 """Episodes to a model that is published and loaded again, on a kinematic stand-in."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from tests.support import standin
 ARGUMENTS = [{"name": q.name, "unit": q.unit, "lower": -4.0, "upper": 4.0} for q in projective.arguments]
 
 
+@lru_cache(maxsize=3)
 def data_set(count: int, seed: int = 1) -> DataSet:
     made = standin.episodes(count, seed)
     episodes = tuple(Episode(k, t[0], t, d, ok, "" if ok else "ball") for k, (t, d, ok) in enumerate(made))
@@ -29,6 +31,12 @@ def data_set(count: int, seed: int = 1) -> DataSet:
 @pytest.fixture(scope="module")
 def data() -> DataSet:
     return data_set(240)
+
+
+@pytest.fixture
+def few_first_ticks(monkeypatch) -> None:
+    """Candidates enough where their choice is not what is tested: five take most of the time of a training."""
+    monkeypatch.setattr(first_ticks, "FIRST_TICKS", (1, 2))
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +100,7 @@ def test_training_twice_gives_the_same_bits(data, duration) -> None:
     assert np.array_equal(again.learner.predict(rows), duration.learner.predict(rows))
 
 
+@pytest.mark.usefixtures("few_first_ticks")
 def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_is_that_of_all(tmp_path) -> None:
     data, late_s = data_set(960), {0: 1.5, 16: -1.5}  # of a sixteenth of the episodes, by their number
     episodes = [
@@ -109,6 +118,7 @@ def test_intervals_beside_objects_are_those_of_the_episodes_there_and_the_mean_i
     assert np.allclose(model.interval(np.stack([e.ticks[0] for e in episodes]))[2], upper, atol=1e-4)
 
 
+@pytest.mark.usefixtures("few_first_ticks")
 def test_episodes_that_calibrate_correct_the_intervals_and_nothing_else() -> None:
     episodes = data_set(240).episodes
     late = [replace(e, number=1000 + e.number, duration_s=e.duration_s + 2, calibrates=True) for e in episodes[:150]]
@@ -124,6 +134,7 @@ def test_episodes_that_calibrate_correct_the_intervals_and_nothing_else() -> Non
         assert not corrected or (high - mean > 1.9).mean() > 0.9
 
 
+@pytest.mark.usefixtures("few_first_ticks")
 def test_selected_episodes_are_learned_from_but_judge_no_intervals() -> None:
     episodes = data_set(240).episodes
     late = [replace(e, number=1000 + e.number, duration_s=e.duration_s + 2, selected=True) for e in episodes[:150]]
@@ -186,6 +197,7 @@ def test_a_success_model_warns_of_most_failures(data, tmp_path) -> None:
     assert missed.sum() < 0.3 * (~observed).sum()
 
 
+@pytest.mark.usefixtures("few_first_ticks")
 def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path) -> None:
     ramps = (np.linspace(2.0, 0.0, len(e.ticks)) / len(e.ticks) * e.duration_s for e in data.episodes)
     recorded = tuple(replace(e, work_j=ramp) for e, ramp in zip(data.episodes, ramps, strict=True))
@@ -201,6 +213,7 @@ def test_energy_is_learned_published_and_loaded_as_durations_are(data, tmp_path)
         train_regression(ENERGY, data.episodes, projective, "linear", seed=3)
 
 
+@pytest.mark.usefixtures("few_first_ticks")
 def test_a_card_states_the_coverage_of_random_and_on_policy_episodes(data) -> None:
     chosen = [replace(e, on_policy=e.number % 4 > 0) for e in data.episodes]
     test = train_duration(chosen, projective, "linear", seed=3).test
