@@ -4,6 +4,7 @@ import filecmp
 import json
 import os
 import shutil
+import time
 
 import huggingface_hub.constants
 import numpy as np
@@ -372,6 +373,7 @@ def test_what_the_hub_refuses_is_reported_in_one_line(hub, capsys, monkeypatch):
     monkeypatch.setenv("HF_TOKEN", "hf_other")
     assert "user/mine: the hub refuses with status 401" in refused(capsys, "push", ROBOT, "--to", "user/mine")
     monkeypatch.setenv("HF_ENDPOINT", "http://127.0.0.1:9")
+    monkeypatch.setattr(time, "sleep", lambda _: None)  # the hub's client tries six times, 1 to 8 s apart
     assert "user/mine: the hub cannot be reached" in refused(capsys, "pull", "--from", "user/mine", "--zoo", "zoo")
     assert "user/mine: the hub cannot be reached" in refused(capsys, "push", ROBOT, "--to", "user/mine")
 
