@@ -113,7 +113,7 @@ def agree(texts):
     domain, problem = read(*texts)
     found = {}
     for ground in (True, False):
-        result = solve(domain, problem, Settings(node_limit=200, ground=ground))
+        result = solve(domain, problem, Settings(node_limit=100, ground=ground))
         found[ground] = result.status
         if result.plan is not None:
             assert validate(result.plan, domain, problem) == "", f"{'ground' if ground else 'lifted'} {texts}"
