@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -60,8 +61,9 @@ def context_entry(domain: Domain, action: str, names: Sequence[str]) -> dict[str
     return {} if context is None else {CONTEXT: {"names": list(names), "failure": context.failure}}
 
 
+@lru_cache(maxsize=8)  # each action has a manifest of its own, and 200 files are parsed for the hashes: 0.3 s
 def source_entries(domain: str) -> dict[str, Any]:
-    """Entries of a manifest that state the source that episodes are simulated with."""
+    """Entries of a manifest that state the source that episodes are simulated with; they are shared, not to change."""
     return {"source_sha256": episodes_sha256(domain), "source_files": short_hashes(episode_files(domain))}
 
 
