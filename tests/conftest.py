@@ -22,6 +22,14 @@ settings.register_profile("repeat", settings.get_profile("explore"), derandomize
 settings.load_profile("repeat")
 
 
+@pytest.fixture
+def few_first_ticks(monkeypatch):
+    """Candidates enough where their choice is not what is tested: five take most of the time of a training."""
+    from tailor.models.training import first_ticks
+
+    monkeypatch.setattr(first_ticks, "FIRST_TICKS", (1, 2))
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item):
     """Where pybullet is not installed, what needs the kitchen's simulator is skipped: later Pythons have no wheel."""

@@ -33,12 +33,6 @@ def data() -> DataSet:
     return data_set(240)
 
 
-@pytest.fixture
-def few_first_ticks(monkeypatch) -> None:
-    """Candidates enough where their choice is not what is tested: five take most of the time of a training."""
-    monkeypatch.setattr(first_ticks, "FIRST_TICKS", (1, 2))
-
-
 @pytest.fixture(scope="module")
 def duration(data: DataSet) -> Trained:
     return train_duration(data.episodes, projective, "linear", seed=3)

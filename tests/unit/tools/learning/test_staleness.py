@@ -10,7 +10,6 @@ from tailor.models.episodes.episodes import merge, read_data_set
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.changed_source import changed_files
-from tailor.schemas.installed.episode_files import episode_files
 from tailor.tools.launch import stale_models
 from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.learning import staleness, zoo_checks
@@ -45,7 +44,7 @@ def card(data):
 @pytest.fixture
 def altered(monkeypatch):
     """A source of which one file differs from today's."""
-    files = {**episode_files("arm"), REACH: "0" * 64}
+    files = {**staleness.todays_files("arm"), REACH: "0" * 64}
     monkeypatch.setattr(staleness, "todays_files", lambda _: files)
     monkeypatch.setattr(stale_models, "episode_files", lambda _: files)
     return files
@@ -96,7 +95,7 @@ def test_every_source_of_a_merged_data_set_counts(card) -> None:
     files = next(iter(card["episodes"]["source_files"].values()))
     card["episodes"]["sources"][1]["source_sha256"] = "old"
     card["episodes"]["source_files"]["old"] = {**files, REACH: "0" * 12, "gone.py": "1" * 12}
-    assert changed_files(card["episodes"], episode_files("arm")) == [REACH, "gone.py"]
+    assert changed_files(card["episodes"], staleness.todays_files("arm")) == [REACH, "gone.py"]
 
 
 def test_models_of_other_tools_and_of_recordings_are_not_judged(card, altered) -> None:

@@ -18,6 +18,8 @@ from tailor.tools.learning.training_request import TrainingRequest, reproduction
 from tailor.tools.learning.training_run import context_jobs, own_jobs, train_action, train_models
 from tests.support import standin
 
+pytestmark = pytest.mark.usefixtures("few_first_ticks")
+
 NAMES = ("x", "y", "phi", "v", "xg", "yg", "phig", "vg", "obstacle_x", "obstacle_y", "obstacle_r")
 
 

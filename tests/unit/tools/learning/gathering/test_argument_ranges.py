@@ -54,17 +54,16 @@ def test_an_argument_that_is_always_the_same_has_a_range_without_width(monkeypat
 
 
 @pytest.mark.parametrize(
-    ("domain", "action", "beside", "name", "lower", "upper"),
+    ("domain", "action", "beside", "expected"),
     [
-        ("soccer", "goToPose", False, "phi", -3.15, 3.15),
-        ("soccer", "goToPose", True, "obstacle_r", 0.1, 0.3),
-        ("arm", "reach", False, "a", -1.3, 1.3),
-        ("kitchen", "goToPose", True, "box_r", 0.0, 0.3),
-        ("kitchen", "goToPose", True, "box_x", -4.35, 4.7),
-        ("kitchen", "goToPose", False, "v", 0.0, 0.6),
+        ("soccer", "goToPose", False, {"phi": (-3.15, 3.15)}),
+        ("soccer", "goToPose", True, {"obstacle_r": (0.1, 0.3)}),
+        ("arm", "reach", False, {"a": (-1.3, 1.3)}),
+        ("kitchen", "goToPose", True, {"box_r": (0.0, 0.3), "box_x": (-4.35, 4.7)}),
+        ("kitchen", "goToPose", False, {"v": (0.0, 0.6)}),
     ],
 )
-def test_the_ranges_of_the_models_that_ship_stay(domain, action, beside, name, lower, upper) -> None:
+def test_the_ranges_of_the_models_that_ship_stay(domain, action, beside, expected) -> None:
     spec = DataSetSpec(domain, action, 0, 0, Path(), beside=beside)
-    (entry,) = (each for each in argument_ranges(domains.load(domain), spec) if each["name"] == name)
-    assert (entry["lower"], entry["upper"]) == (lower, upper)
+    found = {each["name"]: (each["lower"], each["upper"]) for each in argument_ranges(domains.load(domain), spec)}
+    assert {name: found[name] for name in expected} == expected

@@ -26,6 +26,8 @@ from tailor.tools.learning.training_run import train_action
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.samplers.soccer import SoccerSampler
 
+pytestmark = pytest.mark.usefixtures("few_first_ticks")
+
 COUNT, COUNT_ALONE = 60, 24
 RADIUS_M = 0.2
 COLUMNS = (
@@ -49,7 +51,7 @@ class AmongOpponents(SoccerSampler):
 
 
 @pytest.fixture(scope="module")
-def beside(tmp_path_factory: pytest.TempPathFactory):
+def beside(few_draws, tmp_path_factory: pytest.TempPathFactory):
     """A data set of goToPose beside one opponent, and one of the same action by itself."""
     patch = pytest.MonkeyPatch()
     domain = domains.load("soccer")

@@ -22,6 +22,8 @@ from tailor.tools.main import main
 
 RECORDING = Path(__file__).parents[4] / "data" / "golden" / "soccer-approach-dribble.mcap"
 
+pytestmark = pytest.mark.usefixtures("few_draws")
+
 
 def test_a_recording_that_is_named_twice_is_refused(tmp_path: Path, capsys) -> None:
     copy = shutil.copy(RECORDING, tmp_path / "copy.mcap")

@@ -21,6 +21,8 @@ from tailor.tools.learning.gathering.uncertain_episodes import (
 )
 from tailor.tools.main import main
 
+pytestmark = pytest.mark.usefixtures("few_draws")
+
 FLAGS = ["--uncertain", "--episodes", "21", "--pool", "3", "--jobs", "1"]
 
 
@@ -33,7 +35,7 @@ def test_the_tasks_nearest_to_one_half_are_chosen_whichever_side() -> None:
 
 
 @pytest.fixture(scope="module")
-def gathered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def gathered(few_draws, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("uncertain")
     assert main(["gather", "agilo", *FLAGS, "--json", "--out", str(folder)]) == 0
     return folder
