@@ -47,8 +47,8 @@ test-mutants: setup  # hand-made mistakes in safety code, each of which a test m
 test-packages: setup  # new robots, the tutorial and foreign packages, from the wheel to a verified run: 10 minutes
 	$(BIN)/python -m pytest tests/e2e/packages
 
-test-new-robots: setup  # of those a new robot of each kind and one foreign package: 4 minutes
-	$(BIN)/python -m pytest tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
+test-new-robots: setup  # of those a new robot of each kind and one foreign package, two at a time: 2 minutes
+	$(BIN)/python -m pytest -n 2 --dist load tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew
