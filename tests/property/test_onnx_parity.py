@@ -95,7 +95,7 @@ BLENDS = {
 @pytest.mark.parametrize("name", BLENDS)
 def test_intervals_agree(name, examples, monkeypatch) -> None:
     """But where the standard deviation lies on a threshold of the intervals, to rounding errors."""
-    monkeypatch.setattr(network_training, "STEPS", 400)  # of 4000: what is exported need not predict well
+    monkeypatch.setattr(network_training, "STEPS", 150)  # of 4000: what is exported need not predict well
     arguments, targets, groups = examples
     learner = CalibratedRegressor(BLENDS[name]).fit(projective(arguments), targets, groups=groups)
     rows = awkward()

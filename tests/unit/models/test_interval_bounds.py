@@ -39,7 +39,7 @@ def examples() -> tuple[np.ndarray, np.ndarray]:
 def exported(learner: RegressionModel):
     """Session and bounds of a learner, fitted in short."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(network_training, "STEPS", 500)
+        patch.setattr(network_training, "STEPS", 200)
         content = export_duration(learner.fit(*examples()), projective, {}).SerializeToString()
     return open_session(content), model_bounds(content, "projective", 5)
 
