@@ -9,7 +9,7 @@ from typing import Any
 from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import control, deliberate
-from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal
+from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal, drops_goal
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
@@ -92,7 +92,7 @@ class Shell:
 
     def _tick(self, period: Period, goal: str, stopping: bool) -> None:
         samples = (*self._inbox.drain(period.now_ns), *self._planner_answer(period))
-        inputs = Inputs(samples, self._requested_goal() or goal, period.skipped, stopping)
+        inputs = Inputs(samples, self._goal(goal), period.skipped, stopping)
         self._state, outputs = control(self._context, self._state, period.now_ns, inputs)
         self._publish(outputs)
         control_ns = self._clock.now_ns() - period.now_ns
@@ -102,18 +102,23 @@ class Shell:
         self._publish(outputs)
         self._report(period, inputs, control_ns, budget.granted)
 
-    def _requested_goal(self) -> str:
-        """An accepted goal of this tick's request, "" without one; an invalid goal is refused with its cause."""
+    def _goal(self, first: str) -> str:
+        """The goal that this tick's request sets, else `first`; an invalid goal is refused with its cause."""
         request = self._goals.poll()
         if request is None:
-            return ""
+            return first
         goal = request.text.strip() or self._context.problem.goal_text
         refusal = check_goal(self._context, goal)
         if refusal is not None:
             request.refuse(str(refusal))
-            return ""
-        request.accept()
-        return goal
+            return first
+        if not drops_goal(self._context, goal):
+            request.accept()
+            return goal
+        task = self._state.task
+        dropped = first or (task.goal if task.active else "")
+        request.accept(f"cancelled: {dropped}" if dropped else "no goal is open")
+        return goal if dropped else ""
 
     def _planner_answer(self, period: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""

@@ -12,7 +12,7 @@ from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.outlet import at_rest
-from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
@@ -52,7 +52,7 @@ def interrupted(context: Context, before: Task, state: State, inputs: Inputs) ->
     if before.running is None or state.task.running is not None:
         return None
     if inputs.goal:
-        cause = Cause(Reason.NEW_GOAL)
+        cause = Cause(Reason.CANCELLED if state.task.result is Result.CANCELLED else Reason.NEW_GOAL)
     elif inputs.stopping:
         cause = Cause(Reason.SHUTDOWN)
     else:

@@ -16,10 +16,10 @@ from tailor.executive.core.sensing.freshness import (
 from tailor.executive.core.sensing.measurements import without_faulty
 from tailor.executive.core.sensing.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
-from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.context import Context, drops_goal
 from tailor.executive.interfaces.domain import measurement_fault, relocations
 from tailor.executive.interfaces.outlet import staying
-from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import key_of
@@ -98,9 +98,20 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
 
 
 def _with_goal(context: Context, state: State, goal: str) -> State:
+    if drops_goal(context, goal):
+        return _without_goal(state)
     facts = state.task.facts or frozenset(context.problem.initial)
     task = Task(goal=goal, active=True, facts=facts)
     return replace(state, task=task, deliberation=None, fault=None, mode=Mode.READY)
+
+
+def _without_goal(state: State) -> State:
+    """The open goal dropped with all that was decided for it: nothing moves until another goal is set."""
+    if not state.task.active:
+        return state
+    state = undecided(state)
+    task = replace(state.task, active=False, result=Result.CANCELLED)
+    return replace(state, task=task, fault=None, mode=Mode.READY)
 
 
 def _with_mode(context: Context, state: State, clock_fault: Cause | None) -> State:

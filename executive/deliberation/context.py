@@ -116,6 +116,11 @@ def make_context(
     )
 
 
+def drops_goal(context: Context, goal: str) -> bool:
+    """Whether an accepted goal has no condition, so that it asks for nothing but the end of the open one."""
+    return context.problem.with_goal(goal).goal_text in ("(and)", "()")
+
+
 def check_goal(context: Context, goal: str) -> Cause | None:
     """Cause for which a PDDL goal is refused; None if it is accepted."""
     length = len(goal.encode(errors="replace"))

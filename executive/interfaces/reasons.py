@@ -34,6 +34,7 @@ class Reason(StrEnum):
     COURSE_AT_RISK = "course at risk"
     DISARMED = "disarmed"
     NEW_GOAL = "new goal"
+    CANCELLED = "cancelled"
     SHUTDOWN = "shutdown"
     PLANNER_FAILED = "planner failed"
     PLAN_UNREADABLE = "plan unreadable"
@@ -85,6 +86,7 @@ REASONS: dict[Reason, Row] = {
     ),
     Reason.DISARMED: Row(ACTION, "aborted: the driver no longer obeys; it decides anew", "cause of mode DISARMED"),
     Reason.NEW_GOAL: Row(ACTION, "aborted: another goal was set", ""),
+    Reason.CANCELLED: Row(ACTION, "aborted: the goal was dropped", ""),
     Reason.SHUTDOWN: Row(ACTION, "aborted: the executive comes to rest and ends", ""),
     Reason.PLANNER_FAILED: Row(PLAN, "the external planner failed; the search takes over", "outcome, its text"),
     Reason.PLAN_UNREADABLE: Row(PLAN, "the external planner's output is no plan; the search takes over", "first error"),
@@ -103,11 +105,12 @@ REASONS: dict[Reason, Row] = {
 
 
 class Result(StrEnum):
-    """Result of a task; OPEN until it is achieved or has failed."""
+    """Result of a task; OPEN until it is achieved, has failed, or its goal was dropped."""
 
     OPEN = ""
     ACHIEVED = "achieved"
     FAILED = "failed"
+    CANCELLED = "cancelled"
 
 
 @dataclass(frozen=True, slots=True)

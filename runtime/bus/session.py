@@ -212,13 +212,21 @@ class Session:
         Returns:
           (accepted, response); (False, reason) if there is no such service or no response in time.
         """
+        return next(self._responses(key, text, timeout_s), (False, no_service(key)))
+
+    def call_all(self, key: str, text: str, timeout_s: float = 2.0) -> list[tuple[bool, str]]:
+        """Send a request to every process that serves `key`; their responses as of `call`, at least one."""
+        return list(self._responses(key, text, timeout_s)) or [(False, no_service(key))]
+
+    def _responses(self, key: str, text: str, timeout_s: float) -> Iterator[tuple[bool, str]]:
         sent = text.encode(errors="backslashreplace")  # a word of a command line need not be text
-        for reply in self._zenoh.get(key, payload=sent, timeout=timeout_s):
+        every = zenoh.ConsolidationMode.NONE  # else of several responses under one key only the newest arrives
+        for reply in self._zenoh.get(key, payload=sent, timeout=timeout_s, consolidation=every):
             if reply.ok is not None:
-                return True, text_of(reply.ok.payload)
-            error = "" if reply.err is None else text_of(reply.err.payload)
-            return False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
-        return False, no_service(key)
+                yield True, text_of(reply.ok.payload)
+            else:
+                error = "" if reply.err is None else text_of(reply.err.payload)
+                yield False, f"no response within {timeout_s:g} s" if error == "Timeout" else error
 
     def subscribe_all(self, pattern: str, queue: IngestQueue | None = None) -> tuple[IngestQueue, Subscriptions]:
         """Subscribe to all keys that match a pattern of plain keys; undeclare the returned subscriptions at the end.

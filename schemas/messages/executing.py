@@ -17,7 +17,7 @@ class ExecStatus(Message):
     reason: str  # of the mode, see docs/reasons.md
     scenario: str
     goal: str
-    result: str  # "", "achieved", "failed"
+    result: str  # "", "achieved", "failed", "cancelled"
     action: str  # e.g. "goToPose", empty between actions
     action_index: int
     action_elapsed_s: float

@@ -59,6 +59,8 @@ MISTAKES = [
     (("arm", "agilo", "--off", "--reset"), "--off disarms, which releases no emergency stop"),
     (("executive", "soccer", "--goal", "(atbal pos3)"), "atbal"),
     (("executive", "soccer", "--goal", "(atball pos3"), ":1:"),
+    (("executive", "soccer", "--goal", "( and )"), "--goal ( and ): has no condition, expected one, or --wait"),
+    (("goal", "--cancel", "(atball pos3)"), "--cancel: expected without a goal"),
     (("goal", "(atball pos3)"), "no router responds"),
     (("status", "--json", "--seconds", "0"), "--seconds is 0, expected 0.2 to 3600"),
     (("status", "--seconds", "nan"), "--seconds is 'nan', expected a number, at least 0"),

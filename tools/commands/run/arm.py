@@ -1,8 +1,8 @@
-"""Arm a driver: it obeys the commands of one sender, by default of the running executive.
+"""Arm a driver: it obeys the commands of one sender, by default of the one running executive.
 
 The request is repeated until the driver's state confirms it. A request to arm is not repeated once anything else has
 changed, such as an e-stop that somebody pressed meanwhile. A robot whose goal is still open moves at once;
-`tailor goal "(and)"` drops it.
+`tailor goal --cancel` drops it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, ope
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 
 POLL_S = 0.01
+OTHERS_S = 0.35  # after the first executive is heard: every other one publishes its status within 0.1 s
+MAX_NAMED = 4
 TEXTS = {
     Outcome.CONFIRMED: "{state}",
     Outcome.REFUSED: "refused: {refusal}; {state}",
@@ -38,14 +40,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--off", action="store_true", help="disarm instead")
     parser.add_argument("--reset", action="store_true", help="also release a latched emergency stop")
     parser.add_argument(
-        "--sender", metavar="HEX", help="sender to obey, 32 hex digits (default: the running executive)"
+        "--sender", metavar="HEX", help="sender to obey, 32 hex digits (default: the one running executive)"
     )
     parser.add_argument("--json", action="store_true", help="print outcome, mode and reason as JSON")
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if the driver's state confirms the request, 1 if not."""
+    """0 if the driver's state confirms the request, 1 if not, 2 if it is not clear which executive is meant."""
     robot: str = arguments.robot
     if not re.fullmatch(r"[\w-]+(/[\w-]+)*", robot, re.ASCII):
         raise UsageError(f"robot {robot!r}: expected a name, e.g. agilo")
@@ -74,15 +76,25 @@ def _print(arguments: argparse.Namespace, robot: str, outcome: str, text: str, s
 
 
 def _executive_sender(session: Session) -> str:
-    """Sender id of the executive that publishes its status; empty if none does in time."""
+    """Sender id of the executive that publishes its status; empty if none does in time.
+
+    Raises:
+      UsageError: Several do, of which nobody knows whose commands would move the robot.
+    """
     inbox = session.inbox(["status"], "")
+    scenarios: dict[str, str] = {}  # by sender
     ends = time.monotonic() + WAIT_S
     while time.monotonic() < ends:
         for sample in inbox.drain():
             if isinstance(sample.message, ExecStatus):
-                return sample.sender
+                ends = ends if scenarios else time.monotonic() + OTHERS_S
+                scenarios[sample.sender] = sample.message.scenario
         time.sleep(POLL_S)
-    return ""
+    if len(scenarios) > 1:
+        named = ", ".join(f"{sender} ({scenario})" for sender, scenario in sorted(scenarios.items())[:MAX_NAMED])
+        more = f" and {len(scenarios) - MAX_NAMED} more" if len(scenarios) > MAX_NAMED else ""
+        raise UsageError(plain(f"{len(scenarios)} executives are running, expected one or --sender: {named}{more}"))
+    return next(iter(scenarios), "")
 
 
 def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcome, Exchange]:

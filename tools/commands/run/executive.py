@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.state import State
-from tailor.executive.deliberation.context import Context, check_goal
+from tailor.executive.deliberation.context import Context, check_goal, drops_goal
 from tailor.executive.interfaces.reasons import Reason
 from tailor.executive.robot_models import check_models
 from tailor.executive.shell import Shell
@@ -113,4 +113,6 @@ def _goal(context: Context, arguments: argparse.Namespace) -> str:
     refusal = check_goal(context, goal)
     if refusal is not None:
         raise UsageError(f"--goal {goal}: {refusal}")
+    if drops_goal(context, goal):
+        raise UsageError(f"--goal {goal}: has no condition, expected one, or --wait to start without a goal")
     return goal

@@ -26,6 +26,10 @@ def same_goal(n, given, x):
     return dataclasses.replace(given, goal="(and (visited a) (visited b) (at b))" if n == 6 else given.goal)
 
 
+def cancelled(n, given, x):
+    return dataclasses.replace(given, goal="( and )" if n == 6 else given.goal)
+
+
 def stopping(n, given, x):
     return dataclasses.replace(given, stopping=n == 6)
 
@@ -40,6 +44,7 @@ def ends(run):
         (disarmed, "disarmed", DISARM_DETAIL),
         (new_goal, "new goal", ""),
         (same_goal, "new goal", ""),
+        (cancelled, "cancelled", ""),
         (stopping, "shutdown", ""),
     ],
 )

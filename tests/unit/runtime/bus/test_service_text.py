@@ -16,7 +16,7 @@ def session(reply=None):
     """A session whose calls get this reply, and what it sent."""
     sent = []
 
-    def get(key, payload, timeout):
+    def get(key, payload, timeout, consolidation):
         sent.append(bytes(zenoh.ZBytes(payload)))
         return [reply] if reply else []
 
