@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.state import Inputs, Output, State, initial_state
-from tailor.executive.core.step import control, deliberate
+from tailor.executive.core.step import at_once_at_rest, control, deliberate
 from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal, drops_goal
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.runtime import realtime
@@ -80,7 +81,7 @@ class Shell:
             while True:
                 period = loop.wait_for_next_period()
                 stopping = until(self._state)
-                self._tick(period, goal, stopping)
+                self._tick_or_rest(period, goal, stopping)
                 goal = ""
                 self._notifier.alive()
                 if stopping:
@@ -89,6 +90,15 @@ class Shell:
                 realtime.collect_garbage(self._state.tick)
         finally:
             self._planner.close()
+
+    def _tick_or_rest(self, period: Period, goal: str, stopping: bool) -> None:
+        """One tick. If it raises, the robot brakes at once; the guard latches its stop, as no command follows."""
+        try:
+            self._tick(period, goal, stopping)
+        except Exception:
+            with contextlib.suppress(Exception):  # code of the robot's package as well
+                self._publish(at_once_at_rest(self._context, self._state, period.now_ns))
+            raise
 
     def _tick(self, period: Period, goal: str, stopping: bool) -> None:
         samples = (*self._inbox.drain(period.now_ns), *self._planner_answer(period))

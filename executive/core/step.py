@@ -16,7 +16,7 @@ from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.interfaces.outlet import messages_of
+from tailor.executive.interfaces.outlet import at_rest, messages_of
 from tailor.schemas.messages import ArmRequest
 
 REARM_NS = 500_000_000  # a request without an effect is repeated
@@ -65,6 +65,15 @@ def step(
     state, first = control(context, state, now_ns, inputs)
     state, rest = deliberate(context, state, budget)
     return state, (*first, *rest)
+
+
+def at_once_at_rest(context: Context, state: State, now_ns: int) -> tuple[Output, ...]:
+    """The zero command, if the driver obeys: for a shell whose tick of this time raised, before it ends."""
+    if disarmed(context, state) is not None:
+        return ()
+    zero = at_rest(context.domain.axes, state.command)
+    commands = messages_of(context.domain, zero, context.stamp(now_ns))
+    return tuple(Output(topic, command) for topic, command in commands)
 
 
 def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:

@@ -33,7 +33,7 @@ class RunComparison:
     def __init__(self, run: RecordedRun, robot: str, exact: bool, exact_proofs: bool, proofs: bool = True) -> None:
         self.ticks = self.compared = self.rounded = 0
         self._robot, self._exact, self._exact_proofs, self._proofs = robot, exact, exact_proofs, proofs
-        self._last_tick = run.ticks[-1].tick
+        self._last_tick, self._last_stamp_ns = run.ticks[-1].tick, run.ticks[-1].stamp_ns
         self._published: dict[str, list[Recorded]] = dict(run.published)
         self._n_compared: dict[str, int] = defaultdict(int)
         self._last_report: Message | None = None  # of refinement, without its gap
@@ -60,11 +60,15 @@ class RunComparison:
         return None
 
     def missing(self) -> Difference | None:
-        """A recorded message that today's core did not publish by the end of the run."""
-        key = next((key for key, messages in self._published.items() if len(messages) > self._n_compared[key]), None)
-        if key is None:
-            return None
-        return Difference(self.ticks, key, "message", f"number {self._n_compared[key] + 1}", "none")
+        """A recorded message that today's core did not publish by the end of the run.
+
+        One of a tick without a report counts as none: its executive ended, or the recording does, within that tick.
+        """
+        for key, messages in self._published.items():
+            number = self._n_compared[key]
+            if number < len(messages) and getattr(decoded(messages[number]), "stamp_ns", 0) <= self._last_stamp_ns:
+                return Difference(self.ticks, key, "message", f"number {number + 1}", "none")
+        return None
 
     def _message(self, tick: int, recorded: Recorded, today: Message) -> Difference | None:
         if recorded.data == encode(today):

@@ -203,3 +203,11 @@ def test_only_who_asks_for_a_part_gets_the_verdict_on_one(tmp_path, whole):
     runs = RecordedRuns(written(tmp_path / "a.mcap", kept))
     with pytest.raises(UsageError, match="tick 7 is missing"):
         verify(runs, runs.runs[0], rebuild_context(runs.runs[0].provenance))
+
+
+def test_what_an_executive_published_in_the_tick_in_which_it_ended_is_no_difference(tmp_path, capsys, whole):
+    """An executive that is killed, or whose robot's code raises, reports no tick; verify called that a fault."""
+    last = next(message for message in reversed(whole) if message.key == TICK_KEY)
+    path = written(tmp_path / "a.mcap", [message for message in whole if message is not last])
+    assert main(["verify", str(path)]) == 0
+    assert capsys.readouterr().out.startswith("equal: ")

@@ -20,8 +20,10 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.ros_time import wrapped_ns
+from tailor.tools.cli.package_run import blamed_on_running_package
 from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.deployment import executive_config
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_sender, open_bus, sender_of
@@ -72,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
         print_states = not notifier.supervised
         if print_states:
             print(beginning(context, goal), flush=True)
-        with state_lines(lambda: state_line(shell.state, context.domain.robot), print_states):
+        printed = state_lines(lambda: state_line(shell.state, context.domain.robot), print_states)
+        with blamed_on_running_package(spec_of(arguments.domain)), printed:
             state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and bool(state.task.result)))
     end.check()
     return 1 if arguments.once and state.task.result != "achieved" else 0

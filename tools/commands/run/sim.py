@@ -19,6 +19,7 @@ from tailor.simnodes.driver_spec import driver_spec_to_run
 from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
+from tailor.tools.cli.package_run import blamed_on_running_package
 from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.systems.system_flags import deployment_from
@@ -58,7 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
         realtime.elevate_bus_threads()
         epoch = 1 + secrets.randbelow(2**62)  # another one at every start
         node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, leave)
-        _run(node, world.body.robot, lambda: end.reached(session), notifier)
+        with blamed_on_running_package(spec_of_robot(arguments.robot)):
+            _run(node, world.body.robot, lambda: end.reached(session), notifier)
     end.check()
     return 0
 
