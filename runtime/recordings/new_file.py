@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from tailor.schemas.errors import UsageError
 
@@ -32,6 +33,13 @@ def check_new_file(path: Path) -> None:
         raise UsageError(EXISTS.format(error.filename or path)) from error
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a file that can be written") from error
+
+
+def check_room(folder: Path) -> None:
+    """Check that a recording can begin in a folder, with a file that nobody sees; raises OSError if it cannot."""
+    with TemporaryFile(dir=folder) as file:
+        file.write(bytes(PROBE_BYTES))
+        file.flush()
 
 
 @contextmanager

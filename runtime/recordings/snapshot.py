@@ -23,7 +23,8 @@ class SnapshotBuffer:
     """Ring buffer of the messages of the last `span_ns`, at most `max_bytes`."""
 
     def __init__(self, span_ns: int, max_bytes: int = MAX_BYTES) -> None:
-        self._span_ns, self._max_bytes = span_ns, max_bytes
+        self.span_ns = span_ns
+        self._max_bytes = max_bytes
         self._messages: deque[tuple[Raw, int, int]] = deque()  # with its wall and monotonic time
         self._bytes = 0
 
@@ -31,7 +32,7 @@ class SnapshotBuffer:
         """Append a message received at `wall_ns` and drop the oldest ones; `now_ns` is monotonic."""
         self._messages.append((raw, wall_ns, now_ns))
         self._bytes += memory_of(raw)
-        while self._messages and (self._messages[0][2] < now_ns - self._span_ns or self._bytes > self._max_bytes):
+        while self._messages and (self._messages[0][2] < now_ns - self.span_ns or self._bytes > self._max_bytes):
             self._bytes -= memory_of(self._messages.popleft()[0])
 
     @property

@@ -16,7 +16,7 @@ from tests.support.bus_system import bus_system, driving, guarded_robot, moving,
 from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.stalls import repeat_on_stall
 
-MAX_BYTES = 60_000  # of the file, then the kernel refuses as it does on a full disk
+MAX_BYTES = 80_000  # of the file, then the kernel refuses as it does on a full disk
 LIMITED = f"""
 import resource, sys
 resource.setrlimit(resource.RLIMIT_FSIZE, ({MAX_BYTES}, {MAX_BYTES}))
@@ -164,3 +164,17 @@ def test_a_flood_costs_the_recorder_neither_memory_nor_order(tmp_path):
 def memory_mb(pid):
     with open(f"/proc/{pid}/status") as status:
         return next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1000
+
+
+@pytest.mark.parametrize("flags", [(), ("--snapshot", "5"), ("--max-size", "1")])
+def test_a_recorder_does_not_start_on_a_full_disk(tmp_path, flags):
+    with bus_system() as (_, endpoint, _):
+        full = LIMITED.replace(str(MAX_BYTES), "1000")
+        words = ("record", "-o", tmp_path / "r.mcap", *flags, "--connect", endpoint)
+        done = subprocess.run(
+            [sys.executable, "-c", full, *map(str, words)], capture_output=True, text=True, timeout=PATIENCE_S
+        )
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert line == f"tailor record: {tmp_path}/r.mcap: File too large, expected a writable path"
+    assert list(tmp_path.iterdir()) == []

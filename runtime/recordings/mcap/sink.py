@@ -8,6 +8,7 @@ from __future__ import annotations
 import errno
 import os
 import time
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
@@ -43,17 +44,18 @@ class Sink:
         """Write all buffered bytes to the disk.
 
         Raises:
-          OSError: The disk is full or broken; the file is unchanged, and the bytes stay buffered.
+          OSError: The disk is full or broken; the bytes stay buffered, the file is unchanged unless it cannot be cut.
         """
         try:
+            os.lseek(self._file, self.on_disk, os.SEEK_SET)  # whatever a flush that failed has left behind
             done = 0
             with memoryview(self._pending) as whole:  # released at once: a buffer that is exported cannot grow
                 while done < len(whole):
                     with whole[done:] as rest:
                         done += os.write(self._file, rest)
         except OSError:
-            os.ftruncate(self._file, self.on_disk)
-            os.lseek(self._file, self.on_disk, os.SEEK_SET)
+            with suppress(OSError):  # of a broken disk; the next flush writes over what is left
+                os.ftruncate(self._file, self.on_disk)
             raise
         self.on_disk += len(self._pending)
         self._pending = bytearray()

@@ -24,7 +24,7 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.service import ServiceServer, no_service
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
-from tailor.runtime.recordings.new_file import EXISTS
+from tailor.runtime.recordings.new_file import EXISTS, check_room
 from tailor.runtime.recordings.recorder import Health, Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
@@ -130,6 +130,7 @@ def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selecti
     metadata = RecordingMetadata(version("tailor"), wall_ns())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        check_room(path.parent)
         if arguments.snapshot:
             return SnapshotRecorder(path, queue, wanted, SnapshotBuffer(round(arguments.snapshot * 1e9)), metadata)
         return Recorder(path, queue, wanted, limits, metadata)

@@ -555,3 +555,64 @@ def test_a_snapshot_is_written_a_second_after_a_failure_and_on_request(tmp_path)
     assert [m.sequence for m in first.messages()] == [1, 2, 3, 4]
     assert dict(first.metadata())["snapshot"] == {"reason": "exec/status: FAULT: why"}
     assert dict(open_recording(health.files[1]).metadata())["snapshot"] == {"reason": "by hand"}
+
+
+@pytest.fixture
+def snapshots(tmp_path):
+    """A recorder of snapshots of 10 s that has had a message and an executive's fault, at 0 s, and its queue."""
+    queue = IngestQueue()
+    path, kept = tmp_path / "s.mcap", SnapshotBuffer(10 * S)
+    recorder = SnapshotRecorder(path, queue, EVERYTHING, kept, RecordingMetadata("1", 0))
+    for raw in (odometry(1), status("EXECUTING", 1), status("FAULT", 2)):
+        queue.put(raw)
+    recorder.step(0)
+    return recorder, queue
+
+
+def test_a_snapshot_that_found_a_full_disk_is_written_once_there_is_room(snapshots, full_disk):
+    recorder, _ = snapshots
+    full_disk(True)
+    for second in range(1, 6):
+        recorder.step(second * S)
+    assert (recorder.health.files, recorder.health.disk_error) == ([], "No space left on device")
+    full_disk(False)
+    recorder.step(7 * S)
+    (written,) = recorder.health.files
+    assert [m.key for m in open_recording(written).messages()] == ["agilo/odom", "exec/status", "exec/status"]
+    assert recorder.health.disk_error == ""
+    assert "FAULT" in dict(open_recording(written).metadata())["snapshot"]["reason"]
+    recorder.step(30 * S)
+    assert len(recorder.health.files) == 1
+
+
+def test_a_snapshot_is_given_up_once_its_messages_have_left_the_memory_and_the_loss_stays_reported(
+    snapshots, full_disk
+):
+    recorder, queue = snapshots
+    full_disk(True)
+    for second in range(1, 14):
+        recorder.step(second * S)
+    full_disk(False)
+    queue.put(odometry(2))
+    recorder.step(14 * S)
+    assert (recorder.close().files, recorder.health.disk_error) == ([], "No space left on device")
+
+
+def test_a_later_failure_takes_the_place_of_a_snapshot_that_waits_for_room(snapshots, full_disk):
+    recorder, queue = snapshots
+    full_disk(True)
+    recorder.step(1 * S)
+    for raw in (status("EXECUTING", 3), status("FAULT", 4)):
+        queue.put(raw)
+    recorder.step(8 * S)
+    full_disk(False)
+    recorder.step(9 * S)
+    (written,) = recorder.health.files
+    assert [m.sequence for m in open_recording(written).messages()] == [1, 1, 2, 3, 4]
+
+
+def test_the_end_of_a_recorder_is_the_last_attempt_at_a_snapshot(snapshots, full_disk):
+    recorder, _ = snapshots
+    full_disk(True)
+    recorder.step(1 * S)
+    assert recorder.close().disk_error == "No space left on device"

@@ -112,3 +112,23 @@ def test_an_error_appears_with_the_next_flush_and_the_bytes_are_written_again(tm
     file.finish()
     file.close()
     assert (tmp_path / "f").read_bytes() == b"firstsecond"
+
+
+def test_a_flush_whose_remains_cannot_be_cut_off_is_written_over_by_the_next_one(tmp_path, monkeypatch):
+    """The file went on behind what had been written of it, so that all later positions in it were wrong."""
+    file, real, room = sink.Sink(tmp_path / "f"), os.write, [3]
+    file.write(b"first")
+    file.flush()
+
+    def broken(*_):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(sink.os, "write", lambda fd, data: real(fd, data[: room.pop()]) if room else broken())
+    monkeypatch.setattr(sink.os, "ftruncate", broken)
+    file.write(b"second")
+    with pytest.raises(OSError, match="Input/output"):
+        file.flush()
+    monkeypatch.setattr(sink.os, "write", real)
+    file.flush()
+    file.close()
+    assert (tmp_path / "f").read_bytes() == b"firstsecond"
