@@ -15,6 +15,8 @@ MIN_RATE_HZ, MAX_RATE_HZ = 0.1, 100.0  # the period of the least is a number; th
 MAX_START = 1e6  # m or rad; every receiver refuses a pose far beyond
 TOPIC = re.compile(r"/?[\w-]+(/[\w-]+)*", re.ASCII)  # zenoh opens no other key, and some are patterns
 
+MAX_NAME = 247  # characters of a topic's name in ROS 2, of which no node could have a longer one
+
 
 @dataclass(frozen=True, slots=True)
 class RobotBus:
@@ -102,7 +104,12 @@ def _faults(settings: PlainSettings) -> list[str]:
     faults += [
         f"topics.{each} is {name!r}, expected a name of ROS 2 such as /base/{each}"
         for each, name in names.items()
-        if name and not TOPIC.fullmatch(name)
+        if name and len(name) <= MAX_NAME and not TOPIC.fullmatch(name)
+    ]
+    faults += [
+        f"topics.{each} has {len(name)} characters, expected at most {MAX_NAME}, as in ROS 2"
+        for each, name in names.items()
+        if len(name) > MAX_NAME
     ]
     if not 0 <= settings.bus.domain_id <= MAX_DOMAIN:
         faults.append(f"bus.domain_id is {settings.bus.domain_id}, expected 0 to {MAX_DOMAIN}")

@@ -8,6 +8,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.comparison import ComparedRun
 
 COLOURS = ("#1f77b4", "#d62728")
@@ -43,7 +44,7 @@ def _draw_durations(plot: Axes, runs: tuple[ComparedRun, ComparedRun]) -> None:
         for action in run.actions:
             (bar,) = plot.barh(row, action.actual_s, left=start_s, color=colour, alpha=0.45, edgecolor="white")
             plot.plot([start_s + action.predicted_s] * 2, [row - 0.4, row + 0.4], color="black", linewidth=1)
-            plot.text(start_s, row, f" {action.action}", va="center", fontsize="x-small", clip_path=bar)
+            plot.text(start_s, row, f" {plain(action.action)}", va="center", fontsize="x-small", clip_path=bar)
             start_s += action.actual_s
     plot.set_yticks(range(len(runs)), [run.name for run in runs])
     plot.invert_yaxis()

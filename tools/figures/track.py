@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import result_text
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.scenes.flat import Outline, Point, flat, projected
 from tailor.tools.scenes.robot_scenes import TRUTH_TYPES, RobotScenes, Subgoal
 
@@ -83,7 +84,8 @@ def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track
     for message in messages:
         if isinstance(message, ExecStatus):
             status = message
-            track.result = result_text(message.result, message.result_reason, message.result_detail) or track.result
+            result = result_text(message.result, message.result_reason, message.result_detail)
+            track.result = plain(result) or track.result
             believed += _points(track, scenes, scenes.of_belief(message.belief), status, message.stamp_ns)
         elif isinstance(message, ActionFinished):
             track.finished.append(message)
@@ -114,9 +116,8 @@ def _points(
     objects = {name: place for name, place in shown.places.items() if _is_object(shown.outlines[name])}
     track.outlines |= {name: shown.outlines[name] for name in objects}
     track.body |= {name: outline for name, outline in shown.outlines.items() if outline.on_robot and outline.closed}
-    yield TrackPoint(
-        stamp_ns / 1e9, shown.x, shown.y, shown.phi, shown.speed_mps, objects, status.action_index, status.action
-    )
+    action = plain(status.action)  # matplotlib warns of a character that it cannot draw, and prints it as it is
+    yield TrackPoint(stamp_ns / 1e9, shown.x, shown.y, shown.phi, shown.speed_mps, objects, status.action_index, action)
 
 
 def _is_object(outline: Outline) -> bool:

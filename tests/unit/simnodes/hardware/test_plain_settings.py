@@ -28,6 +28,7 @@ WRONG = {
     'robot = "r"\n[topics]\nodom = "base//odom"': "topics.odom is 'base//odom', expected a name of ROS 2",
     'robot = "r"\n[topics]\nodom = "/base"\ncmd_vel = "base"': "topics: 'base' is named twice",
     'robot = "r"\n[topics]\npose = "/"': "topics.pose is '/', expected a name of ROS 2",
+    f'robot = "r"\n[topics]\nodom = "{"o" * 248}"': "topics.odom has 248 characters, expected at most 247",
     "robot = ": "not TOML",
     "robot = " + "[" * 5000: "nested too deeply, expected the description of a robot",
     f'robot = "r"\n[pose]\nstart = [1{"0" * 400}, 0, 0]': "expected a number of at most 64 bits",

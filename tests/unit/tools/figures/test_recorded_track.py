@@ -1,12 +1,13 @@
 """Tracks out of recordings, read as they go."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tailor.runtime.recordings import recording
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import Provenance
+from tailor.schemas.messages import ExecStatus, Provenance
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.track import READ, track_of
 
@@ -25,3 +26,14 @@ def test_a_track_decodes_only_what_it_is_made_of(name, domain, monkeypatch):
     assert track == track_of("t", everything, domain)
     assert decoded <= {Provenance, *READ}
     assert {type(each) for each in everything} - decoded
+
+
+def test_names_in_a_recording_reach_no_terminal_as_control_characters():
+    """matplotlib warns of a character that it cannot draw, and prints it as it is."""
+    own = [each for _, each in recording.open_recording(GOLDEN / "soccer-approach.mcap").decoded(READ)]
+    status = {"action": "drive\x1b[2J", "result": "failed", "result_detail": "\x1b[1m"}
+    forged = [replace(each, **status) if isinstance(each, ExecStatus) else each for each in own]
+    track = track_of("t", forged, "soccer")
+    assert {point.name for point in track.points} == {"drive\\x1b[2J"}
+    assert track.result.startswith("failed: ")
+    assert track.result.isprintable()
