@@ -2,6 +2,10 @@
 
 import pytest
 
+from tailor.executive import domains
+from tailor.schemas.errors import UsageError
+from tailor.tools.lockstep.bodies import made_body
+from tailor.tools.lockstep.worlds import make_world
 from tailor.tools.main import main
 from tests.support.robots.known_robot import known_robot
 
@@ -61,6 +65,15 @@ def test_a_body_that_cannot_be_made_or_is_another_robots_is_not_simulated(refusa
     error = capsys.readouterr().err
     assert error.startswith(f"tailor sim: {refusal}")
     assert error.count("\n") == 1
+
+
+def test_whatever_makes_a_body_names_one_that_cannot_be_made_in_one_line(tmp_path):
+    """Evaluations, goldens and environments of gymnasium ended in the traceback of its constructor."""
+    with known_robot("cart", "wheeled", tmp_path) as folder:
+        change(folder / "cart", *MISTAKES["ValueError: XML parse error"])
+        for make in (lambda: make_world("cart", "", 0), lambda: made_body(domains.load("cart"))):
+            with pytest.raises(UsageError, match=r"^cart\.body:Body: cannot be simulated: ValueError: XML parse error"):
+                make()
 
 
 @pytest.mark.parametrize(("old", "new"), [("class Body:", "class Chassis:"), ("def _drive(self)", "def _drive(self")])

@@ -28,7 +28,8 @@ from tailor.tools.gym.spaces import (
     numbers,
     width,
 )
-from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S, new_body
+from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S
+from tailor.tools.lockstep.bodies import made_body
 from tailor.tools.lockstep.readings import judged, newest
 from tailor.tools.lockstep.task_sampler import sampler_of
 
@@ -67,7 +68,7 @@ class ActionEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
         if name not in self._domain.actions:
             raise UsageError(f"no action {name!r} in {domain}, expected one of: {', '.join(self._domain.actions)}")
         self._action, self._sampler = self._domain.actions[name], sampler_of(self._domain)
-        self._body = new_body(self._domain)
+        self._body = made_body(self._domain)
         self.action_space = command_space(self._domain, shipped_driver_spec(self._domain.robot))
         self.observation_space = Dict(
             belief=numbers(len(self._domain.belief_names)), arguments=numbers(width(self._action))

@@ -8,8 +8,10 @@ from importlib.util import find_spec
 from typing import Any
 
 from tailor.executive import domains
+from tailor.executive.interfaces.domain import Domain
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import spec_of
+from tailor.schemas.installed import part, spec_of
+from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.simnodes.body import Body
 from tailor.tools.lockstep.action_run import new_body
 
@@ -27,9 +29,21 @@ def body_of(domain: str, profile: str) -> Body:
     """
     check_profile(domain, profile)
     if not profile:
-        return new_body(domains.load(domain))
+        return made_body(domains.load(domain))
     body: Body = _profiles(domain).body(profile)
     return body
+
+
+def made_body(domain: Domain) -> Body:
+    """As `new_body`, which is part of what models learn from and stays as it is.
+
+    Raises:
+      UsageError: The robot's package has no body, or one that cannot be made.
+    """
+    spec = spec_of(domain.name)
+    part(spec, "body")  # its own error is not one of the constructor
+    with blamed_on_package(spec, f"{spec.body}: cannot be simulated"):
+        return new_body(domain)
 
 
 def check_profile(domain: str, profile: str) -> None:

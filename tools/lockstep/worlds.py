@@ -5,6 +5,7 @@ from __future__ import annotations
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.installed import part, spec_of_robot
+from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.simnodes.world import Event, World
 
 
@@ -17,12 +18,14 @@ def make_world(robot: str, scenario: str, seed: int) -> World:
       seed: Random seed of start, targets and noise.
 
     Raises:
-      UsageError: Robot or scenario is unknown, or the robot has no body.
+      UsageError: Robot or scenario is unknown, or the robot has no body, or none that can be made.
     """
     spec = spec_of_robot(robot)
     name = scenario or domains.scenarios(spec.name)[0]
     sampled, start = domains.seeded_scenario(spec.name, name, seed)
-    return World(part(spec, "body")(), start, seed, events_of(sampled))
+    made = part(spec, "body")
+    with blamed_on_package(spec, f"{spec.body}: cannot be simulated"):
+        return World(made(), start, seed, events_of(sampled))
 
 
 def events_of(scenario: Scenario) -> list[Event]:

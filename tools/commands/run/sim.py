@@ -13,7 +13,6 @@ from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
-from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.driver_spec import driver_spec_to_run
 from tailor.simnodes.guard import Guard, Mode
@@ -66,10 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _world(robot: str, scenario: str, seed: int) -> World:
-    """`make_world`; what code of a package raises is an error of its user: another start would end in the same way."""
-    spec = spec_of_robot(robot)
-    with blamed_on_package(spec, f"{spec.body}: cannot be simulated"):
-        world = make_world(robot, scenario, seed)
+    """`make_world`, of the robot that its package declares."""
+    spec, world = spec_of_robot(robot), make_world(robot, scenario, seed)
     if world.body.robot != robot:
         raise UsageError(f"{spec.body}: robot is '{world.body.robot}', expected '{robot}' by the spec")
     return world
