@@ -73,7 +73,8 @@ def _heads(node: Node) -> set[str]:
     """The first words of a condition and of its parts: predicates and connectives."""
     if isinstance(node, Word):
         return set()
-    return {node.head}.union(*map(_heads, node.items))
+    parts = node.items[2:] if node.head in {"forall", "exists"} else node.items  # variables may be of (either ...)
+    return {node.head}.union(*map(_heads, parts))
 
 
 def _definition(name: str, rules: Sequence[Form], domain: Domain) -> Definition:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from tailor.executive.planning.pddl.action_reader import read_action
+from tailor.executive.planning.pddl.action_reader import NUMERIC_EFFECTS, read_action
 from tailor.executive.planning.pddl.derived_reader import with_derived
 from tailor.executive.planning.pddl.formula_reader import CONNECTIVES, Scope
 from tailor.executive.planning.pddl.language import Domain, Typed
+from tailor.executive.planning.pddl.numeric_reader import ARITHMETIC
 from tailor.executive.planning.pddl.syntax.s_expressions import (
     Form,
     Node,
@@ -93,9 +94,10 @@ def _declare(form: Form, domain: Domain) -> Domain:
                 raise form.place.error(f"more than {MAX_OBJECTS} constants")
             return replace(domain, constants=constants)
         case ":predicates":
-            _reject_connectives(rest)
+            _reject_names(rest, CONNECTIVES | NUMERIC_EFFECTS, "predicate")
             return replace(domain, predicates=_signatures(rest, domain))
         case ":functions":
+            _reject_names(rest, ARITHMETIC, "function")
             return replace(domain, functions=_signatures(_without_types(rest), domain))
         case head if head in _ACTIONS or head == ":derived":
             return domain
@@ -124,11 +126,11 @@ def _signatures(nodes: list[Node], domain: Domain) -> Mapping[str, tuple[Typed, 
     return signatures
 
 
-def _reject_connectives(nodes: list[Node]) -> None:
-    """Raises at a predicate that no formula could name, because its name means something else there."""
+def _reject_names(nodes: list[Node], taken: frozenset[str], kind: str) -> None:
+    """Raises at a name that no condition, effect or number could use, because it means something else there."""
     for node in nodes:
-        if isinstance(node, Form) and node.head in CONNECTIVES:
-            raise node.items[0].place.error(f"'{node.head}' cannot be the name of a predicate")
+        if isinstance(node, Form) and node.head in taken:
+            raise node.items[0].place.error(f"'{node.head}' cannot be the name of a {kind}")
 
 
 def _without_types(nodes: list[Node]) -> list[Node]:

@@ -11,6 +11,7 @@ from tailor.executive.planning.pddl.language import DurationBound, Function, Num
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, form_of, word_of
 
 MAX_NUMBERS = 100  # in a duration or a cost, evaluated for every ground action; the domains at hand have 3 at most
+ARITHMETIC = frozenset({"+", "-", "*", "/"})
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+]?[0-9]+)?")
 
 
@@ -68,7 +69,7 @@ def _duration(node: Node, scope: Scope) -> tuple[DurationBound, ...]:
 def _numeric(node: Node, scope: Scope) -> Numeric:
     if isinstance(node, Word):
         return Number(number_of(node))
-    if node.head in {"+", "-", "*", "/"}:
+    if node.head in ARITHMETIC:
         return _operation(node, scope)
     parameters = scope.domain.functions.get(node.head)
     if node.head == "total-cost":

@@ -81,6 +81,15 @@ def test_free_variables_without_a_term_stay():
     assert substituted(condition, {}) == condition
 
 
+def test_a_derived_predicate_may_be_called_either():
+    condition = formula(
+        "(:derived (either ?a) (exists (?b - (either block table)) (r ?a ?b)))",
+        "(either ?x)",
+        "(q ?x) (r ?x ?y) (either ?x)",
+    )
+    assert condition == formula("", "(exists (?b - (either block table)) (r ?x ?b))")
+
+
 # --- refusals ------------------------------------------------------------------------------------
 def refusal(parts, kind=PddlError):
     with pytest.raises(kind) as caught:

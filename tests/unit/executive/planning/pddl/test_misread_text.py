@@ -23,6 +23,8 @@ DASH = "; a '-' between names and their type stands alone"
         ("(r))", "(?r))", "2:27: expected a name, found '?r'"),
         ("(r))", "(and ?x))", "2:27: 'and' cannot be the name of a predicate"),
         ("(r))", "(= ?x ?y))", "2:27: '=' cannot be the name of a predicate"),
+        ("(r))", "(increase))", "2:27: 'increase' cannot be the name of a predicate"),
+        ("(total-cost)", "(+ ?x)", "2:44: '+' cannot be the name of a function"),
         ("action go", "action", "3:11: expected the action's name, found ':parameters'"),
         ("domain d", "domain ?d", "1:17: expected the domain's name, found '?d'"),
         ("(r))", "(r\x1b[31m))", "2:28: a control character, U+001B"),
