@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
 from tailor.executive.planning.ground.ground_action import (
@@ -31,6 +31,7 @@ from tailor.executive.planning.pddl.language import Action, Condition, When
 from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
 
 Conditions: TypeAlias = tuple[tuple[GroundCondition, Span], ...]
+C = TypeVar("C")  # a condition, ground or lifted
 _ZERO = Fraction(0)
 _INSTANT = (_ZERO, _ZERO)
 MAX_VARIANTS = 64  # of a delete effect beside add effects: doubled by each add effect with conditions at two moments
@@ -144,8 +145,8 @@ def _without_restored(
     for effect in effects:
         additions = failures.get((effect.literal ^ 1, effect.moment), [])
         facts.spend(max(len(additions) - 1, 0))  # each excludes one more condition
-        variants = _unless_added(effect, additions)
-        kept += variants
+        variants = excluding(effect.conditions, additions)
+        kept += [effect._replace(conditions=variant) for variant in variants]
         restored += [] if variants else [effect]
     return tuple(kept), tuple(restored)
 
@@ -162,12 +163,19 @@ def _failures(addition: GroundEffect) -> list[Conditions]:
     return [tuple((part, span) for part in conjuncts(fails)) for fails, span in failures if fails != FALSE]
 
 
-def _unless_added(effect: GroundEffect, additions: list[list[Conditions]]) -> list[GroundEffect]:
-    """An effect under conditions that exclude add effects, each given by its ways to fail; empty if one always happens.
+def excluding(conditions: tuple[C, ...], additions: Iterable[Sequence[tuple[C, ...]]]) -> list[tuple[C, ...]]:
+    """Alternative conditions of a delete effect, so that no add effect undoes it; empty if one always happens.
 
-    Nearly all add effects have one way: those of a delete effect beside thousands must not be copied for each of them.
+    Nearly all add effects have one way to fail: those of a delete effect beside thousands must not be copied for each.
+
+    Args:
+      conditions: Of the delete effect itself.
+      additions: The ways in which each add effect of that literal and moment does not happen.
+
+    Raises:
+      TooMuchToGround: There are more alternatives than `MAX_VARIANTS`.
     """
-    variants = [list(effect.conditions)]
+    variants = [list(conditions)]
     for ways in additions:
         if len(ways) == 1:
             for variant in variants:
@@ -176,4 +184,4 @@ def _unless_added(effect: GroundEffect, additions: list[list[Conditions]]) -> li
             variants = [[*variant, *way] for variant in variants for way in ways]
         if len(variants) > MAX_VARIANTS:
             raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
-    return [effect._replace(conditions=tuple(variant)) for variant in variants] if additions else [effect]
+    return [tuple(variant) for variant in variants]

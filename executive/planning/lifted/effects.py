@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
-from tailor.executive.planning.ground.ground_formula import TooMuchToGround
-from tailor.executive.planning.ground.instances import MAX_VARIANTS
+from tailor.executive.planning.ground.instances import excluding
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.lifted.lifter import Lifter, Names
 from tailor.executive.planning.pddl.language import Action, When
@@ -98,18 +97,14 @@ def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect], lifter:
 
     An add effect with guards at several moments fails if those of one moment fail: each gives one alternative.
     """
-    variants = [effect.guards]
-    if effect.literal.positive:
-        return variants
-    for other in effects:
+    additions: list[list[tuple[Guard, ...]]] = []
+    for other in effects if not effect.literal.positive else ():
         if other.literal[0] == effect.literal[0] and other.literal.positive and other.moment == effect.moment:
             lifter.spend()
             sparing = _sparing_guards(other, effect.literal)
             if all(guard.holds != TRUE for guard in sparing):
-                variants = [(*variant, guard) for variant in variants for guard in sparing]
-                if len(variants) > MAX_VARIANTS:
-                    raise TooMuchToGround(f"more than {MAX_VARIANTS} variants of a delete effect of one action")
-    return variants
+                additions.append([(guard,) for guard in sparing])
+    return excluding(effect.guards, additions)
 
 
 def _sparing_guards(addition: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
