@@ -94,7 +94,8 @@ class AnytimeSearch:
         grounded = self._cache.last
         assert grounded is not None
         task: GroundTask = yield from make_task(self._problem, grounded, settings.action_cost)
-        engine = BestFirst[Any](plan_space(task, grounded, settings, RandomSource(settings.seed)), settings)
+        space = yield from plan_space(task, grounded, settings, RandomSource(settings.seed))
+        engine = BestFirst[Any](space, settings)
         engine.goes_on, engine.is_hopeless = True, _Bound(self, task).is_hopeless
         self._second = engine
         for result in engine.run():

@@ -62,7 +62,8 @@ class PlanEnumeration:
         task = yield from make_task(self._problem, grounded, self._settings.action_cost)
         for more in MORE_STEPS:
             settings = replace(self._settings, step_limit=self._steps + more)
-            engine = BestFirst[Any](plan_space(task, grounded, settings, RandomSource(settings.seed)), settings)
+            space = yield from plan_space(task, grounded, settings, RandomSource(settings.seed))
+            engine = BestFirst[Any](space, settings)
             engine.goes_on = True
             yield from map(self._new_plan, takewhile(_goes_on, engine.run()))
         self.finished = True

@@ -121,17 +121,19 @@ class _Course:
         """Partial-order search; with a metric two by turns: one ranks by it, the other is for coverage."""
         settings, metric = self._settings, self._problem.metric
         if settings.rankings or not metric or settings.search != "A":
-            return self._searching(task, grounded, settings, rng)
+            return (yield from self._searching(task, grounded, settings, rng))
         eager, by_metric = task, replace(settings, rankings=rankings_for(settings, metric))
         if metric == "cost" and settings.action_cost == "unit":
             eager = yield from make_task(self._problem, grounded, "metric")
             by_metric = replace(by_metric, action_cost="metric")
-        first = self._searching(eager, grounded, by_metric, rng)
-        second = self._searching(task, grounded, replace(settings, rankings=DEFAULT_RANKINGS), rng)
+        first = yield from self._searching(eager, grounded, by_metric, rng)
+        second = yield from self._searching(task, grounded, replace(settings, rankings=DEFAULT_RANKINGS), rng)
         return Portfolio(first, second, HEAD_START, share=1)
 
-    def _searching(self, task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource) -> Engine:
-        space = plan_space(task, grounded, settings, rng)
+    def _searching(
+        self, task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource
+    ) -> Generator[None, None, Engine]:
+        space = yield from plan_space(task, grounded, settings, rng)
         return BestFirst[Any](space, settings) if settings.search == "A" else Deepening[Any](space, settings)
 
     def _ground(self) -> Iterator[None]:
@@ -147,12 +149,15 @@ class _Course:
                 self._cache.last = grounded
 
 
-def plan_space(task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource) -> PlanSpace[Any]:
-    """The plan space of the settings: ground, or with variables."""
+def plan_space(
+    task: GroundTask, grounded: GroundActions, settings: Settings, rng: RandomSource
+) -> Generator[None, None, PlanSpace[Any]]:
+    """The plan space of the settings: ground, or with variables; yields as a unit of budget is used."""
     if settings.ground:
         return GroundSpace(task, grounded.world, settings, rng)
     from tailor.executive.planning.lifted.task import lifted_task
     from tailor.executive.planning.lifted_space import LiftedSpace
 
     order = rng if settings.random_open_conditions else None
-    return LiftedSpace(lifted_task(task, grounded.world, settings.action_cost, order), settings, rng)
+    lifted = yield from lifted_task(task, grounded.world, settings.action_cost, order)
+    return LiftedSpace(lifted, settings, rng)

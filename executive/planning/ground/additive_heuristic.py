@@ -32,6 +32,7 @@ MOST = 1e200  # cost and work of a reached literal: a chain of n actions with tw
 INITIAL = Value(0, 1, 0)  # a link from the initial state costs no action, but one unit of work
 NOTHING = Value(0, 0, 0)
 PORTION = 4096  # actions relaxed or entered per unit of budget: ten milliseconds; small tasks take one unit in all
+LITERALS_PER_ACTION = 8  # of more the action counts as several: one quantified condition may have thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def estimate(
 ) -> Generator[None, None, Estimates]:
     """The fixpoint of the relaxed planning graph; each level is computed from the values of the one before.
 
-    Yields after every PORTION of actions, and returns the estimates.
+    Yields after every PORTION of actions, those with many literals counted as several, and returns the estimates.
 
     Args:
       actions: All ground actions.
@@ -96,7 +97,7 @@ def estimate(
     values = [UNREACHABLE] * count
     for literal in initial:
         values[literal] = INITIAL
-    users = _users(actions, count)
+    users, sizes = yield from _users(actions, count)
     pending: Iterable[GroundAction] = actions
     reached: dict[int, None] = {}
     relaxed = 0
@@ -104,8 +105,9 @@ def estimate(
     while pending:
         changed: dict[int, Value] = {}
         for action in pending:
-            relaxed += 1
-            if relaxed % PORTION == 0:
+            relaxed += sizes[action.number]
+            if relaxed >= PORTION:
+                relaxed = 0
                 yield
             if _relax(action, costs[action.number], values, changed) and action is actions[action.number]:
                 reached.setdefault(action.number)
@@ -152,14 +154,22 @@ def _starts(actions: Sequence[GroundAction], values: Sequence[Value]) -> list[Gr
     return starts
 
 
-def _users(actions: Sequence[GroundAction], count: int) -> list[list[int]]:
-    """The numbers of the actions whose conditions mention a literal, by literal."""
+def _users(actions: Sequence[GroundAction], count: int) -> Generator[None, None, tuple[list[list[int]], list[int]]]:
+    """The numbers of the actions whose conditions mention a literal, by literal; and of how many each action counts."""
     users: list[list[int]] = [[] for _ in range(count)]
+    sizes: list[int] = []
+    done = 0
     for action in actions:
         spanned = [*action.conditions, *(c for effect in action.effects for c in effect.conditions)]
-        for literal in {literal for condition, _ in spanned for literal in literals_of(condition)}:
+        read = {literal for condition, _ in spanned for literal in literals_of(condition)}
+        for literal in read:
             users[literal].append(action.number)
-    return users
+        sizes.append(1 + (max(len(read), len(spanned)) + len(action.effects)) // LITERALS_PER_ACTION)
+        done += sizes[-1] - 1
+        if done >= PORTION // LITERALS_PER_ACTION:
+            done = 0
+            yield
+    return users, sizes
 
 
 def literals_of(condition: GroundCondition) -> Iterable[int]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal as OneOf
 
 from tailor.executive.planning.ground.achievers import Achiever, achievers_of
-from tailor.executive.planning.ground.additive_heuristic import Estimates, action_costs, estimate
+from tailor.executive.planning.ground.additive_heuristic import PORTION, Estimates, action_costs, estimate
 from tailor.executive.planning.ground.durations import TimeGrid
 from tailor.executive.planning.ground.goal_grounding import ground_in_portions
 from tailor.executive.planning.ground.ground_formula import (
@@ -60,21 +60,30 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
     goal = tuple(dict.fromkeys(conjuncts(whole_goal)))  # each once, or each would be an open condition
     if contradictory(goal):
         goal = (FALSE,)
+    if large := len(facts) > PORTION:  # what follows takes a millisecond for a thousand facts or two
+        yield
     holding = {facts.literal(fact) for fact in problem.initial if fact[0] not in grounded.world.static}
     timed = tuple(
         (facts.literal(t.literal.fact, t.literal.positive), grounded.grid.units(t.time_s)) for t in problem.timed
     )
     initial = frozenset(literal for n in range(len(facts)) for literal in (2 * n + (2 * n not in holding),))
+    if large:
+        yield
     temporal = problem.domain.durative or bool(timed)
     costs = action_costs(grounded.actions, cost)
     first = initial | {literal for literal, _ in timed}
     estimates = yield from estimate(grounded.actions, costs, first, 2 * len(facts))
     achievers = yield from achievers_of(grounded.actions, estimates, 2 * len(facts))
+    if large:
+        yield
+    names = facts.names()
+    if large:
+        yield
     return GroundTask(
         problem,
         temporal,
         grounded.grid,
-        facts.names(),
+        names,
         initial,
         timed,
         goal,

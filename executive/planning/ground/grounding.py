@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings, without_static
 from tailor.executive.planning.ground.durations import TimeGrid, numeric_steps, time_grid
+from tailor.executive.planning.ground.goal_grounding import Portions
 from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_formula import (
     INSTANCE_STEPS,
@@ -151,7 +152,7 @@ def _exhaustive(
                 yield None
             if binding is not None:
                 limit.spend(INSTANCE_STEPS)
-                maker.add(schema, binding)
+                yield from maker.add(schema, binding)
                 if limit.used - before > MAX_UNCHECKED:
                     before = limit.used
                     yield None
@@ -173,7 +174,7 @@ def _reachable(
             if number % CHECK_EVERY == 0 or limit.used - before > MAX_UNCHECKED:
                 before = limit.used
                 yield None
-            maker.add(tested, dict(zip(names, arguments, strict=True)))
+            yield from maker.add(tested, dict(zip(names, arguments, strict=True)))
     yield maker.result(problem, tolerance_s, reached.facts)
 
 
@@ -184,13 +185,14 @@ class _Maker:
         self._world = world
         self._facts = FactTable((), limit)
         self._limit = limit
+        self._portions = Portions(world, self._facts)
         self._actions: list[GroundAction] = []
         self._bytes = 0
 
-    def add(self, schema: Action, binding: Binding) -> None:
-        """Makes one more action unless it is never applicable or achieves nothing."""
+    def add(self, schema: Action, binding: Binding) -> Iterator[None]:
+        """Makes one more action unless it is never applicable or achieves nothing; yields after each portion."""
         self._limit.spend(numeric_steps(schema))
-        action = instance(len(self._actions), schema, binding, self._world, self._facts)
+        action = yield from instance(len(self._actions), schema, binding, self._portions)
         if action is None:
             return
         self._actions.append(action)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
 from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
+from tailor.executive.planning.ground.goal_grounding import Portions
 from tailor.executive.planning.ground.ground_action import (
     INSTANT,
     MOMENTS,
@@ -19,7 +20,6 @@ from tailor.executive.planning.ground.ground_formula import (
     Binding,
     FactTable,
     GroundCondition,
-    StaticWorld,
     TooMuchToGround,
     bindings,
     contradictory,
@@ -42,16 +42,20 @@ class NegativeCost(Exception):
 
 
 def instance(
-    number: int, schema: Action, binding: Binding, world: StaticWorld, facts: FactTable
-) -> GroundAction | None:
+    number: int, schema: Action, binding: Binding, portions: Portions
+) -> Generator[None, None, GroundAction | None]:
     """The ground action of a complete binding, its durations in ns; None if never applicable or without effect.
+
+    Yields after each portion; small actions are made at once.
 
     Raises:
       NegativeCost: Its cost is below 0.
       TooMuchToGround: A limit is exceeded.
     """
+    world, facts = portions.world, portions.facts
+    portions.begin()
     bounds = _INSTANT if schema.duration is None else duration_range(schema.duration, binding, world)
-    conditions = _conditions(schema.conditions, binding, world, facts)
+    conditions = yield from _conditions(schema.conditions, binding, portions)
     cost = _ZERO if schema.cost is None else evaluate(schema.cost, binding, world)
     if bounds is None or conditions is None or cost is None:
         return None
@@ -61,12 +65,16 @@ def instance(
         raise NegativeCost(f"the cost {amount} of {format_atom(name)}")
     if max(bounds[0], cost) > MAX_NUMBER:
         raise TooMuchToGround(f"the duration or the cost of '{schema.name}' is above {MAX_NUMBER:g}")
-    stated = _effects(schema, binding, world, facts)
+    stated = yield from _effects(schema, binding, portions)
     required = {(part, span[1]) for part, span in conditions}
     useful = [effect for effect in stated if (effect.literal, effect.moment) not in required]
+    if portions.is_due(len(useful)):
+        yield
     effects, restored = _without_restored(useful, stated, facts)
     if not effects:
         return None
+    if portions.is_due(len(conditions)):
+        yield
     return GroundAction(
         number,
         name,
@@ -88,29 +96,34 @@ def _span(when: When, temporal: bool) -> Span:
 
 
 def _conditions(
-    conditions: tuple[Condition, ...], binding: Binding, world: StaticWorld, facts: FactTable
-) -> Conditions | None:
+    conditions: tuple[Condition, ...], binding: Binding, portions: Portions
+) -> Generator[None, None, Conditions | None]:
     """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
     grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
-        result = ground(condition.formula, binding, world, facts)
+        result = yield from portions.condition(condition.formula, binding)
         if result == FALSE:
             return None
         for part in conjuncts(result):
-            grounded.append((part, _span(condition.when, world.temporal)))
+            grounded.append((part, _span(condition.when, portions.world.temporal)))
     spans = {span for _, span in grounded}
     if any(contradictory(part for part, own in grounded if own == span) for span in spans):
         return None
     return tuple(grounded)
 
 
-def _effects(schema: Action, binding: Binding, world: StaticWorld, facts: FactTable) -> list[GroundEffect]:
+def _effects(schema: Action, binding: Binding, portions: Portions) -> Generator[None, None, list[GroundEffect]]:
+    world, facts = portions.world, portions.facts
     effects: dict[GroundEffect, None] = {}
     for effect in schema.effects:
         moment = _span(effect.when, world.temporal)[0]
         facts.limit.depth += bool(effect.variables)
         for inner in bindings(effect.variables, binding, world):
-            conditions = _conditions(effect.condition, inner, world, facts)
+            if portions.is_due():
+                yield
+            conditions: Conditions | None = ()
+            if effect.condition:
+                conditions = yield from _conditions(effect.condition, inner, portions)
             if conditions is not None:
                 literal = ground(effect.atom, inner, world, facts, effect.positive)
                 assert isinstance(literal, int)  # the predicate of an effect is not static

@@ -68,8 +68,10 @@ def _opened(plan: PartialPlan, condition: GroundCondition, flaw: OpenCondition) 
 
 def _with_conditions(plan: PartialPlan, conditions: Spanned, node: int) -> PartialPlan:
     """The plan with more open conditions of one step."""
-    opened = opened_by(conditions, node, plan.open)
-    return plan._replace(open=opened, open_count=plan.open_count + len(conditions))
+    steps, orderings, effects, links, opened, threats, open_count, threat_count, cost = plan
+    opened = opened_by(conditions, node, opened)
+    count = open_count + len(conditions)
+    return new(PartialPlan, (steps, orderings, effects, links, opened, threats, count, threat_count, cost))
 
 
 # --- achievers -----------------------------------------------------------------------------------

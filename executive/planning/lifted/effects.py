@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, TypeVar
 
 from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
 from tailor.executive.planning.ground.instances import excluding
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
-from tailor.executive.planning.lifted.lifter import Lifter, Names
+from tailor.executive.planning.lifted.lifter import PORTION_STEPS, Lifter, Names, Paced
 from tailor.executive.planning.pddl.language import Action, When
 from tailor.executive.planning.structures.connectives import FALSE, TRUE, conjunction, disjunction
 
 Spanned = tuple[tuple[LiftedFormula, Span], ...]
 Pairs = tuple[tuple[str, str], ...]
+T = TypeVar("T")
+COMPARED_PER_STEP = 8  # literals compared per step of the limit
 
 
 class Guard(NamedTuple):
@@ -43,8 +45,10 @@ def span_of(when: When, durative: bool) -> Span:
 
 def lifted_effects(
     action: Action, names: Names, conditions: Spanned, lifter: Lifter, durative: bool
-) -> tuple[LiftedEffect, ...]:
+) -> Paced[tuple[LiftedEffect, ...]]:
     """The effects of an action, in order, without no-ops; "forall" is expanded over the objects.
+
+    Yields after each portion.
 
     Args:
       action: Action schema as read.
@@ -53,58 +57,68 @@ def lifted_effects(
       lifter: Converter of this schema's formulas.
       durative: Whether actions of the domain take time.
     """
+    written = yield from _written(action, names, lifter, durative)
+    met = _grouped((part, span[1], part) for part, span in conditions if isinstance(part, LiftedLiteral))
+    added = _grouped((effect.literal, effect.moment, effect) for effect in written if effect.literal.positive)
+    useful: list[LiftedEffect] = []
+    for number, made in enumerate(written, 1):
+        alike = met.get((made.literal.predicate, made.literal.positive, made.moment), [])
+        lifter.spend(len(alike) // COMPARED_PER_STEP)
+        apart = _no_op(made, alike)
+        if apart is not None:
+            additions = [] if made.literal.positive else added.get((made.literal.predicate, True, made.moment), [])
+            useful += [made._replace(guards=guards, apart=apart) for guards in _unless(additions, made, lifter)]
+        if lifter.is_due() or number % PORTION_STEPS == 0:
+            yield
+    return tuple(effect for effect in useful if all(guard.holds != FALSE for guard in effect.guards))
+
+
+def _written(action: Action, names: Names, lifter: Lifter, durative: bool) -> Paced[dict[LiftedEffect, None]]:
+    """The effects as they are stated, each once, for all objects."""
     written: dict[LiftedEffect, None] = {}
     for effect in action.effects:
         for inner in lifter.choices(effect.variables, names):
             literal = LiftedLiteral(
                 effect.atom.predicate, tuple(inner.get(t, t) for t in effect.atom.terms), effect.positive
             )
-            guards = tuple(
-                Guard(
-                    lifter.lift(c.formula, inner),
-                    lifter.lift(c.formula, inner, False),
-                    span_of(c.when, durative),
-                )
-                for c in effect.condition
-            )
+            guards: list[Guard] = []
+            for c in effect.condition:
+                holds = yield from lifter.lift(c.formula, inner)
+                fails = yield from lifter.lift(c.formula, inner, False)
+                guards.append(Guard(holds, fails, span_of(c.when, durative)))
             moment = span_of(effect.when, durative)[0]
             written.setdefault(LiftedEffect(literal, moment, tuple(g for g in guards if g.holds != TRUE)))
-    useful = []
-    for made in written:
-        apart = _no_op(made, conditions)
-        if apart is not None:
-            useful += [made._replace(guards=guards, apart=apart) for guards in _unless_added(made, written, lifter)]
-    return tuple(effect for effect in useful if all(guard.holds != FALSE for guard in effect.guards))
+            if lifter.is_due():
+                yield
+    return written
 
 
-def _no_op(effect: LiftedEffect, conditions: Spanned) -> Pairs | None:
-    """The pairs that must differ for the effect not to be a no-op; None if it always is one."""
-    literal = effect.literal
+def _no_op(effect: LiftedEffect, conditions: Sequence[LiftedLiteral]) -> Pairs | None:
+    """The pairs that must differ for the effect not to be a no-op; None if it always is one.
+
+    The conditions are those of its predicate and sign that hold up to its moment.
+    """
     apart: Pairs = ()
-    for condition, span in conditions:
-        if not isinstance(condition, LiftedLiteral) or span[1] != effect.moment:
-            continue
-        if condition.predicate == literal.predicate and condition.positive == literal.positive:
-            differing = _differing(literal, condition)
-            if not differing:
-                return None
-            apart += differing if len(differing) == 1 else ()  # with several pairs, none in particular must differ
+    for condition in conditions:
+        differing = _differing(effect.literal, condition)
+        if not differing:
+            return None
+        apart += differing if len(differing) == 1 else ()  # with several pairs, none in particular must differ
     return apart
 
 
-def _unless_added(effect: LiftedEffect, effects: Iterable[LiftedEffect], lifter: Lifter) -> list[tuple[Guard, ...]]:
-    """Alternative guards of an effect; those of a delete effect exclude the add effects of the same moment.
+def _unless(additions: Iterable[LiftedEffect], effect: LiftedEffect, lifter: Lifter) -> list[tuple[Guard, ...]]:
+    """Alternative guards of an effect; those of a delete effect exclude the add effects of that predicate and moment.
 
     An add effect with guards at several moments fails if those of one moment fail: each gives one alternative.
     """
-    additions: list[list[tuple[Guard, ...]]] = []
-    for other in effects if not effect.literal.positive else ():
-        if other.literal[0] == effect.literal[0] and other.literal.positive and other.moment == effect.moment:
-            lifter.spend()
-            sparing = _sparing_guards(other, effect.literal)
-            if all(guard.holds != TRUE for guard in sparing):
-                additions.append([(guard,) for guard in sparing])
-    return excluding(effect.guards, additions)
+    ways: list[list[tuple[Guard, ...]]] = []
+    for other in additions:
+        lifter.spend()
+        sparing = _sparing_guards(other, effect.literal)
+        if all(guard.holds != TRUE for guard in sparing):
+            ways.append([(guard,) for guard in sparing])
+    return excluding(effect.guards, ways)
 
 
 def _sparing_guards(addition: LiftedEffect, literal: LiftedLiteral) -> list[Guard]:
@@ -124,3 +138,11 @@ def _sparing_guards(addition: LiftedEffect, literal: LiftedLiteral) -> list[Guar
 def _differing(a: LiftedLiteral, b: LiftedLiteral) -> Pairs:
     """The pairs of terms with different names; schema terms are plain names."""
     return tuple((str(x), str(y)) for x, y in zip(a.terms, b.terms, strict=True) if x != y)
+
+
+def _grouped(items: Iterable[tuple[LiftedLiteral, int, T]]) -> dict[tuple[str, bool, int], list[T]]:
+    """Things by predicate and sign of a literal, and by a moment: thousands are not compared with all others."""
+    groups: dict[tuple[str, bool, int], list[T]] = {}
+    for literal, moment, item in items:
+        groups.setdefault((literal.predicate, literal.positive, moment), []).append(item)
+    return groups

@@ -53,6 +53,8 @@ def _by_new_step(
     schema: Schema,
     effect: LiftedEffect,
 ) -> LiftedPlan | None:
+    if _is_of_others(effect.literal, literal):
+        return None
     step = len(plan.steps) + 1
     node = len(plan.orderings.late)
     bindings = _bound(task, plan.bindings, schema, step)
@@ -76,6 +78,12 @@ def _by_new_step(
     )
     child = _linked(task, grown, flaw, literal, node + effect.moment, orderings)
     return threatened_by_step(task, child, task.effects_of(schema, step), plan.links)
+
+
+def _is_of_others(effect: LiftedLiteral, literal: LiftedLiteral) -> bool:
+    """Whether an effect of a schema names another object: "forall" makes thousands of such effects."""
+    pairs = zip(effect.terms, literal.terms, strict=True)
+    return any(isinstance(b, str) and isinstance(a, str) and a != b and a[0] != "?" for a, b in pairs)
 
 
 def _bound(task: LiftedTask, bindings: Bindings, schema: Schema, step: int) -> Bindings | None:

@@ -12,7 +12,7 @@ from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
-from tailor.executive.planning.lifted.lifter import Lifter
+from tailor.executive.planning.lifted.lifter import Lifter, Paced
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 from tailor.executive.planning.structures.random_source import RandomSource
@@ -39,8 +39,8 @@ class Schema:
     cost: float  # by which it increases the total cost
 
 
-def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple[Schema, ...]:
-    """The domain's schemata by name.
+def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> Paced[tuple[Schema, ...]]:
+    """The domain's schemata by name; yields after each portion.
 
     Raises:
       TooMuchToGround: "forall", or durations and costs that depend on parameters, exceed the limit of formulas.
@@ -52,7 +52,7 @@ def schemata(world: StaticWorld, grid: TimeGrid, limit: GroundingLimit) -> tuple
     expanded: list[Schema] = []
     for action, names in renamed:
         limit.subject = f"'{action.name}'"
-        expanded += _schemata(action, names, Lifter(world, parameters, limit), world, grid)
+        expanded += yield from _schemata(action, names, Lifter(world, parameters, limit), world, grid)
     return tuple(sorted(expanded, key=lambda schema: schema.name))
 
 
@@ -64,36 +64,42 @@ def shuffled(schema: Schema, rng: RandomSource) -> Schema:
 
 def _schemata(
     action: Action, names: dict[str, str], lifter: Lifter, world: StaticWorld, grid: TimeGrid
-) -> Iterator[Schema]:
+) -> Paced[list[Schema]]:
     """The schemata of one action: one per choice of the parameters that its duration and cost depend on."""
     durative = world.temporal
     spanned: list[tuple[LiftedFormula, Span]] = []
     for condition in action.conditions:
-        parts: tuple[LiftedFormula, ...] = conjuncts(lifter.lift(condition.formula, names))
+        parts: tuple[LiftedFormula, ...] = conjuncts((yield from lifter.lift(condition.formula, names)))
         spanned += [(part, span_of(condition.when, durative)) for part in parts]
     spanned = list(dict.fromkeys(spanned))  # each once, or each would be an open condition
     if any(part == FALSE for part, _ in spanned):
-        return
+        return []
     conditions = tuple((part, span) for part, span in spanned if not isinstance(part, Equality))
     equalities = tuple(part for part, _ in spanned if isinstance(part, Equality))
-    effects = lifted_effects(action, names, conditions, lifter, durative)
+    effects = yield from lifted_effects(action, names, conditions, lifter, durative)
     parameters = tuple(Typed(names[p.name], p.types) for p in action.parameters)
+    made: list[Schema] = []
     for fixed, bounds, cost in _choices(action, lifter, world):
+        if lifter.is_due():
+            yield
         duration = grid.duration(range_ns(bounds))
         if duration is None:
             continue  # ground actions fit the grid: this one is never applicable
-        yield Schema(
-            action.name,
-            parameters,
-            tuple(lifter.variables),
-            conditions,
-            equalities,
-            {names[name]: value for name, value in fixed.items()},
-            effects,
-            *duration,
-            float(bounds[0]),
-            float(cost),
+        made.append(
+            Schema(
+                action.name,
+                parameters,
+                tuple(lifter.variables),
+                conditions,
+                equalities,
+                {names[name]: value for name, value in fixed.items()},
+                effects,
+                *duration,
+                float(bounds[0]),
+                float(cost),
+            )
         )
+    return made
 
 
 def _choices(

@@ -8,20 +8,22 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.additive_heuristic import NOTHING, UNREACHABLE, Value
-from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
+from tailor.executive.planning.ground.additive_heuristic import NOTHING, PORTION, UNREACHABLE, Value
+from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld, TooMuchToGround
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral
-from tailor.executive.planning.lifted.lifter import Lifter
+from tailor.executive.planning.lifted.lifter import Lifter, Paced
 from tailor.executive.planning.lifted.schema import Schema, schemata, shuffled
 from tailor.executive.planning.pddl.language import Typed
+from tailor.executive.planning.structures.connectives import Conjunction
 from tailor.executive.planning.structures.orderings import FIRST
 from tailor.executive.planning.structures.random_source import RandomSource
 
 LiteralPattern = tuple[str, bool, tuple[str | None, ...]]  # predicate, positive, objects (None: unbound)
 ArgumentKey = tuple[str, bool, int, str]  # predicate, positive, argument position (-1: none), object
 Achiever = tuple[Schema, LiftedEffect]
+MAX_COMPARED = 250_000  # conditions of one step times effects of another, for each plan: a tenth of a second
 MAX_FORMULAS = 50_000  # a quarter of a second; only "forall" over many objects comes near
 
 
@@ -116,23 +118,29 @@ def _matches(fact: Fact, terms: tuple[str | None, ...]) -> bool:
 
 def lifted_task(
     ground: GroundTask, world: StaticWorld, cost: CostOf = "unit", rng: RandomSource | None = None
-) -> LiftedTask:
-    """The lifted task of a problem; with `rng`, conditions are in random order.
+) -> Paced[LiftedTask]:
+    """The lifted task of a problem; with `rng`, conditions are in random order. Yields after each portion.
 
     Raises:
-      TooMuchToGround: Universal quantifiers, durations or costs exceed the limit of formulas.
+      TooMuchToGround: Universal quantifiers, durations or costs exceed the limit of formulas, or leave too many
+        conditions and effects.
     """
     problem, limit = ground.problem, GroundingLimit(MAX_FORMULAS)
     initial: dict[str, list[Fact]] = {}
     for fact in problem.initial:
         initial.setdefault(fact[0], []).append(fact)
-    schemas = schemata(world, ground.grid, limit)
+    schemas = yield from schemata(world, ground.grid, limit)
     if rng is not None:
         schemas = tuple(shuffled(schema, rng) for schema in schemas)
     numbers = itertools.count(1 + sum(len(action.parameters) for action in world.domain.actions))
     limit.subject = "the goal"
     lifter = Lifter(world, numbers, limit)  # of the goal's variables, numbered after those of the schemata
-    goal = lifter.lift(problem.goal, {})
+    goal = yield from lifter.lift(problem.goal, {})
+    _check_sizes(schemas, goal)
+    yield
+    by_argument = _literals_by_argument(ground)
+    if len(ground.names) > PORTION:
+        yield
     literals = (LiftedLiteral(t.literal.fact[0], t.literal.fact[1:], t.literal.positive) for t in problem.timed)
     return LiftedTask(
         ground,
@@ -143,9 +151,23 @@ def lifted_task(
         tuple(PlacedEffect(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
         _achievers(schemas),
         _costs(schemas, cost),
-        _literals_by_argument(ground),
+        by_argument,
         {(n.fact[0], n.positive, n.fact[1:]): v for n, v in zip(ground.names, ground.estimates.values, strict=True)},
     )
+
+
+def _check_sizes(schemas: tuple[Schema, ...], goal: LiftedFormula) -> None:
+    """Raises TooMuchToGround if a single plan of a few steps would take too long to rank."""
+    conditions = {f"'{schema.name}'": len(schema.conditions) for schema in schemas}
+    conditions["the goal"] = len(goal.parts) if isinstance(goal, Conjunction) else 1
+    effects = {f"'{schema.name}'": len(schema.effects) for schema in schemas}
+    user = max(conditions, key=lambda name: conditions[name])
+    maker = max(effects, key=lambda name: effects[name], default="")
+    if effects and conditions[user] * effects[maker] > MAX_COMPARED:
+        raise TooMuchToGround(
+            f"{conditions[user]} conditions of {user} and {effects[maker]} effects of {maker} "
+            "are too many for planning with variables"
+        )
 
 
 def _literals_by_argument(ground: GroundTask) -> dict[ArgumentKey, list[int]]:

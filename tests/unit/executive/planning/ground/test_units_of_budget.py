@@ -1,5 +1,7 @@
 """Grounding checks the budget after so much work, not only after so many bindings of an action."""
 
+from itertools import pairwise
+
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
@@ -35,3 +37,41 @@ def test_quantified_conditions_are_ground_in_several_units_of_the_budget(monkeyp
     assert result is not None
     assert sum(before_check) > 30 * INSTANCE
     assert max(before_check) < grounding.MAX_UNCHECKED + 2 * INSTANCE
+
+
+FORALL = """(define (domain d) (:predicates (p ?x ?y) (q ?x ?y) (g))
+  (:action make :effect (forall (?x ?y) (when (not (q ?x ?y)) (p ?x ?y))))
+  (:action use :precondition (forall (?x ?y) (or (not (q ?x ?y)) (p ?x ?y))) :effect (g)))"""
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+def test_one_huge_action_is_made_in_many_units_of_the_budget(monkeypatch, ground):
+    spent, at_check, real = [0], [0], GroundingLimit.spend
+
+    def counted(limit, steps=1):
+        spent[0] += steps
+        real(limit, steps)
+
+    class MeteredBudget(CheckBudget):
+        def spent(self):
+            at_check.append(spent[0])
+            return super().spent()
+
+    monkeypatch.setattr(GroundingLimit, "spend", counted)
+    objects = " ".join(f"o{n}" for n in range(65))
+    domain, problem = read(FORALL, f"(define (problem x) (:domain d) (:objects {objects}) (:goal (g)))")
+    Search(domain, problem, Settings(ground=ground, engine="pocl", node_limit=1)).advance(MeteredBudget(10**9))
+    assert spent[0] > 25_000
+    assert max(after - before for before, after in pairwise(at_check)) < 2000
+
+
+def test_schemata_with_too_many_literals_for_variables_are_refused_by_name():
+    text = """(define (domain d) (:predicates (p ?x) (q ?x) (g))
+      (:action use :precondition (forall (?x) (p ?x)) :effect (and (g) (forall (?x) (q ?x))))
+      (:action make :effect (forall (?x) (p ?x))))"""
+    objects = " ".join(f"o{n}" for n in range(600))
+    domain, problem = read(text, f"(define (problem x) (:domain d) (:objects {objects}) (:goal (g)))")
+    result = Search(domain, problem, Settings(ground=False)).advance(CheckBudget(10**9))
+    assert result.status == "limit"
+    assert result.reason == "600 conditions of 'use' and 601 effects of 'use' are too many for planning with variables"
+    assert Search(domain, problem).advance(CheckBudget(10**9)).status == "solved"
