@@ -14,6 +14,7 @@ from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, P
 from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimates
 from tailor.executive.planning.ground_plans.separation import UnsettledError
 from tailor.executive.planning.ground_plans.threats import refine_threat
+from tailor.executive.planning.plan_quality import measure_of
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.results import search_gap
 from tailor.executive.planning.settings import Settings, rankings_for
@@ -26,7 +27,8 @@ class GroundSpace:
     def __init__(self, task: GroundTask, world: StaticWorld, settings: Settings, rng: RandomSource) -> None:
         self._task = task
         self._world = world
-        self._unsettled = False  # whether a plan was dropped that may have a schedule
+        self._unsettled = False  # whether a plan was dropped that may have a schedule,
+        self._unshortened = False  # or was given one that may not be its shortest
         names = rankings_for(settings, task.problem.metric)
         self._ranking = Ranking(names, GroundEstimates(task), settings.weight)
         measures = GroundFlawMeasures(task)
@@ -40,14 +42,17 @@ class GroundSpace:
     def is_complete(self, plan: PartialPlan) -> bool:
         """See `PlanSpace`: whether there is a schedule in which no events interfere."""
         try:
-            return schedule(plan, self._task, self._world) is not None
+            found = schedule(plan, self._task, self._world)
+            self._unshortened |= found is not None and not found.is_shortest
+            return found is not None
         except UnsettledError:
             self._unsettled = True
             return False
 
     def gap(self) -> str:
         """See `PlanSpace`."""
-        return search_gap(self._task.has_alternatives_over_all(), self._unsettled)
+        unshortened = self._unshortened and measure_of(self._task.problem) == "makespan"
+        return search_gap(self._task.has_alternatives_over_all(), self._unsettled, unshortened)
 
     def refine(self, plan: PartialPlan, order: int) -> list[PartialPlan]:
         """See `PlanSpace`; a plan without flaws or schedule has no refinements."""

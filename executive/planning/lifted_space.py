@@ -19,6 +19,7 @@ from tailor.executive.planning.lifted.open_conditions import refine_condition
 from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.plan_quality import measure_of
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.results import search_gap
 from tailor.executive.planning.settings import Settings, rankings_for
@@ -34,7 +35,8 @@ class LiftedSpace:
     def __init__(self, task: LiftedTask, settings: Settings, rng: RandomSource) -> None:
         measures = LiftedMeasures(task)
         self._task = task
-        self._unsettled = False  # whether a plan was dropped that may have a schedule
+        self._unsettled = False  # whether a plan was dropped that may have a schedule,
+        self._unshortened = False  # or was given one that may not be its shortest
         self._ranking = Ranking(rankings_for(settings, task.ground.problem.metric), measures, settings.weight)
         self._orders = [FlawSelection(parse_flaw_order(order.text), measures, rng) for order in settings.flaw_orders]
         self.rank = self._ranking.rank
@@ -49,7 +51,9 @@ class LiftedSpace:
 
     def gap(self) -> str:
         """See `PlanSpace`."""
-        return search_gap(self._task.ground.has_alternatives_over_all(), self._unsettled)
+        ground = self._task.ground
+        unshortened = self._unshortened and measure_of(ground.problem) == "makespan"
+        return search_gap(ground.has_alternatives_over_all(), self._unsettled, unshortened)
 
     def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
         """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
@@ -75,19 +79,23 @@ class LiftedSpace:
         """Objects for all variables and a schedule with them, of several the shortest; None if there are none."""
         timed, world = self._task.ground.problem.timed, self._task.world
         found: tuple[Bindings, Orderings] | None = None
+        all_shortest = True
         completions = plan.bindings.completions()
         for bindings in itertools.islice(completions, MAX_COMPLETIONS):
             try:
-                orderings = separated(plan.orderings, _names(plan, bindings), timed, world)
+                schedule = separated(plan.orderings, _names(plan, bindings), timed, world)
             except UnsettledError:
                 self._unsettled = True
                 continue
-            if orderings is not None and (found is None or makespan(orderings) < makespan(found[1])):
-                found = bindings, orderings
-            if found is not None and makespan(found[1]) == makespan(plan.orderings):
-                return found
-        if found is None:
-            self._unsettled |= next(completions, None) is not None
+            if schedule is not None:
+                all_shortest &= schedule.is_shortest
+                if found is None or makespan(schedule.orderings) < makespan(found[1]):
+                    found = bindings, schedule.orderings
+                if makespan(found[1]) == makespan(plan.orderings):
+                    return found
+        more = next(completions, None) is not None
+        self._unsettled |= found is None and more
+        self._unshortened |= found is not None and (more or not all_shortest)
         return found
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:

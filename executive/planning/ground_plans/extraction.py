@@ -11,7 +11,7 @@ from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
-from tailor.executive.planning.ground_plans.separation import separated
+from tailor.executive.planning.ground_plans.separation import Schedule, separated
 from tailor.executive.planning.pddl.language import Action, And, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
@@ -73,16 +73,16 @@ class Frame:
         )
 
 
-def schedule(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Orderings | None:
+def schedule(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Schedule | None:
     """The orderings of a plan without flaws, with interfering events apart; None if they cannot be."""
     return separated(plan.orderings, [action.name for action in plan.steps], task.problem.timed, world)
 
 
 def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
     """The finished plan of a ground search; there is a schedule of it."""
-    names, orderings = tuple(action.name for action in plan.steps), schedule(plan, task, world)
-    assert orderings is not None
-    frame = Frame(names, orderings, task.first_node, task.moments, task.grid)
+    names, found = tuple(action.name for action in plan.steps), schedule(plan, task, world)
+    assert found is not None
+    frame = Frame(names, found.orderings, task.first_node, task.moments, task.grid)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 

@@ -29,6 +29,13 @@ class UnsettledError(Exception):
     """Too many choices between the orders of interfering events have failed to tell whether there is a schedule."""
 
 
+class Schedule(NamedTuple):
+    """Orderings with interfering events apart; whether those of no other choice have a smaller makespan."""
+
+    orderings: Orderings
+    is_shortest: bool = True
+
+
 class Event(NamedTuple):
     """The facts that a start, an end or a timed literal reads, adds and removes, as far as it may.
 
@@ -51,7 +58,7 @@ class Event(NamedTuple):
 
 def separated(
     orderings: Orderings, names: Sequence[Fact], timed: Sequence[TimedLiteral], world: StaticWorld
-) -> Orderings | None:
+) -> Schedule | None:
     """The orderings with more of them, so that interfering events are a tick apart at their earliest times.
 
     Of several the ones with the least makespan, among as many as MAX_REVISED allows.
@@ -69,7 +76,7 @@ def separated(
       UnsettledError: Too many choices failed.
     """
     if not isinstance(orderings, TemporalNetwork):
-        return orderings
+        return Schedule(orderings)
     events = _events(names, timed, world)
     network: TemporalNetwork | None = orderings
     shortest: TemporalNetwork | None = None
@@ -89,9 +96,9 @@ def separated(
         if revised > MAX_REVISED:
             if shortest is None:
                 raise UnsettledError
-            break
+            return Schedule(shortest, is_shortest=False)
         network = _with_last_reversed(orderings, chosen)
-    return shortest
+    return Schedule(shortest) if shortest is not None else None
 
 
 def makespan(orderings: Orderings) -> float:

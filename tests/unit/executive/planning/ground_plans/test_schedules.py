@@ -74,16 +74,39 @@ def test_the_object_that_no_condition_determines_is_one_that_has_a_schedule(grou
     assert validate(result.plan, domain, problem) == ""
 
 
+SHORT_AND_LONG = """(define (domain d) (:requirements :durative-actions) (:predicates (p) (r) (s))
+  (:durative-action long :parameters () :duration (= ?duration 2) :effect (and (at start (r)) (at start (p))))
+  (:action short :parameters () :effect (and (not (r)) (s))))"""
+
+
 @pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
 @pytest.mark.parametrize("goal", ["(p) (s)", "(s) (p)"])
 def test_of_several_schedules_the_shortest_is_proven_to_be_the_best(goal, ground):
-    domain, problem = read(
-        """(define (domain d) (:requirements :durative-actions) (:predicates (p) (r) (s))
-        (:durative-action long :parameters () :duration (= ?duration 2) :effect (and (at start (r)) (at start (p))))
-        (:action short :parameters () :effect (and (not (r)) (s))))""",
-        f"(define (problem x) (:domain d) (:init) (:goal (and {goal})))",
-    )
+    domain, problem = read(SHORT_AND_LONG, f"(define (problem x) (:domain d) (:init) (:goal (and {goal})))")
     search = AnytimeSearch(domain, problem, Settings(tolerance_s=1, ground=ground))
     while not search.ended:
         search.advance(CheckBudget(100))
     assert (search.ended, search.value) == ("proven", 3)  # long at 1, short at 2; not short at 1, long at 2
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("goal", ["(p) (s)", "(s) (p)"])
+def test_a_schedule_that_may_not_be_the_shortest_is_not_proven_to_be_the_best(monkeypatch, goal, ground):
+    monkeypatch.setattr(separation, "MAX_REVISED", 0)
+    domain, problem = read(SHORT_AND_LONG, f"(define (problem x) (:domain d) (:init) (:goal (and {goal})))")
+    search = AnytimeSearch(domain, problem, Settings(tolerance_s=1, ground=ground))
+    while not search.ended:
+        search.advance(CheckBudget(100))
+    assert search.value == 3 or "gave up to look for the shortest schedule" in search.ended
+
+
+def test_a_schedule_that_may_not_be_the_shortest_is_a_plan_of_least_cost(monkeypatch):
+    monkeypatch.setattr(separation, "MAX_REVISED", 0)
+    text = SHORT_AND_LONG.replace("(:predicates", "(:functions (total-cost)) (:predicates").replace(
+        "(and (not (r))", "(and (increase (total-cost) 1) (not (r))"
+    )
+    problem_text = "(define (problem x) (:domain d) (:init) (:goal (and (s) (p))) (:metric minimize (total-cost)))"
+    search = AnytimeSearch(*read(text, problem_text), Settings(tolerance_s=1))
+    while not search.ended:
+        search.advance(CheckBudget(100))
+    assert (search.ended, search.value) == ("proven", 1)
