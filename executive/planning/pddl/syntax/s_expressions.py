@@ -17,6 +17,7 @@ MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests de
 _new = tuple.__new__  # makes a named tuple in half the time of its constructor
 _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f-\x9f]")  # no name has them: printed, they command a terminal
+_INVISIBLE = re.compile(r"[\xad\u061c\u200b\u200e\u200f\u202a-\u202e\u2060-\u206f\ufeff]")  # two names look like one
 
 
 class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of a text
@@ -63,12 +64,15 @@ def read_form(text: str, source: str) -> Form:
     """The single form in a text.
 
     Raises:
-      PddlError: Unbalanced parentheses, words outside the form, control characters, or a text beyond the limits.
+      PddlError: Unbalanced parentheses, words outside the form, control or invisible characters, or a text beyond the
+        limits.
     """
     if len(text) > MAX_CHARACTERS:
         raise error_at(source, 1, 1, f"the text has {len(text)} characters, more than {MAX_CHARACTERS}")
     if control := _CONTROL.search(text):
         raise error_at(source, *place_of(text, control.start()), f"a control character, U+{ord(control[0]):04X}")
+    if hidden := _INVISIBLE.search(text):
+        raise error_at(source, *place_of(text, hidden.start()), f"an invisible character, U+{ord(hidden[0]):04X}")
     stack = [Form(Place(source, 1, 1))]
     for row, line in enumerate(LINE_END.split(text), 1):
         _read_line(line, row, source, stack)

@@ -29,6 +29,8 @@ DASH = "; a '-' between names and their type stands alone"
         ("domain d", "domain ?d", "1:17: expected the domain's name, found '?d'"),
         ("(r))", "(r\x1b[31m))", "2:28: a control character, U+001B"),
         ("(r))", "(r\x00))", "2:28: a control character, U+0000"),
+        ("(r))", "(r) (r\u200b))", "2:32: an invisible character, U+200B"),
+        ("(r))", "(r)) ; \u202e", "2:33: an invisible character, U+202E"),
     ],
 )
 def test_a_domain_with_names_that_are_none_is_refused(old, new, message):
