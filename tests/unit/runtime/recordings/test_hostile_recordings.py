@@ -75,7 +75,7 @@ def test_info_escapes_control_characters_and_markup_of_topics(tmp_path, capsys):
 def test_info_of_thousands_of_topics_ends_soon(tmp_path, capsys):
     path = foreign(tmp_path / "a.mcap", [(k, f"t{k}") for k in range(5000)])
     codes = []
-    assert min_cpu_s(lambda: codes.append(main(["info", str(path)])), 5.0) < 5.0
+    assert min_cpu_s(lambda: codes.append(main(["info", str(path)]))) < 5.0
     assert set(codes) == {0}
     assert "and 4500 topics more" in capsys.readouterr().out
 
@@ -129,7 +129,7 @@ def test_a_file_with_a_hole_of_200_mb_is_read_at_once(tmp_path, opcode):
         file.write(MAGIC + struct.pack("<BQ", opcode, 50_000_000))
         file.truncate(200_000_000)
     assert list(open_recording(path).messages()) == []
-    assert min_cpu_s(lambda: list(open_recording(path).messages()), 2.0) < 2.0
+    assert min_cpu_s(lambda: list(open_recording(path).messages())) < 2.0
 
 
 def test_recover_returns_1_if_nothing_could_be_recovered(tmp_path, capsys):
