@@ -52,7 +52,7 @@ class QueryableSource:
             return None
         length = max(len(part) for part in (query.payload or b"", query.attachment or b""))
         if length > MAX_REQUEST_BYTES:  # unread: to decode 400 MB takes a second of the loop that serves it
-            query.reply_err(f"the request has {length} bytes, expected at most {MAX_REQUEST_BYTES}")
+            query.reply_err(too_long_request(length))
             query.drop()
             return None
         return self._read(query)
@@ -61,6 +61,11 @@ class QueryableSource:
 def no_service(key: str) -> str:
     """What a call returns where nobody declares the service."""
     return f"no service at {key}"
+
+
+def too_long_request(length: int) -> str:
+    """What a request of so many bytes is refused with."""
+    return f"the request has {length} bytes, expected at most {MAX_REQUEST_BYTES}"
 
 
 def text_of(payload: Any) -> str:

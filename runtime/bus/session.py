@@ -17,13 +17,21 @@ from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
-from tailor.runtime.bus.service import QueryableSource, RequestSource, ServiceServer, no_service, text_of, text_request
+from tailor.runtime.bus.service import (
+    QueryableSource,
+    RequestSource,
+    ServiceServer,
+    no_service,
+    text_of,
+    text_request,
+    too_long_request,
+)
 from tailor.runtime.bus.wires import MAX_PLAIN_BYTES, RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
 from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
 from tailor.schemas.ros2.profiles import BARE, COPY, PLAIN, KeyProfile, ros_topic, topic_at
-from tailor.schemas.services import SERVICES
+from tailor.schemas.services import MAX_REQUEST_BYTES, SERVICES
 from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
 
 MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
@@ -220,6 +228,9 @@ class Session:
 
     def _responses(self, key: str, text: str, timeout_s: float) -> Iterator[tuple[bool, str]]:
         sent = text.encode(errors="backslashreplace")  # a word of a command line need not be text
+        if len(sent) > MAX_REQUEST_BYTES:  # a router passes none of these on, and nobody would answer
+            yield False, too_long_request(len(sent))
+            return
         every = zenoh.ConsolidationMode.NONE  # else of several responses under one key only the newest arrives
         for reply in self._zenoh.get(key, payload=sent, timeout=timeout_s, consolidation=every):
             if reply.ok is not None:

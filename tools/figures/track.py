@@ -53,6 +53,7 @@ class Track:
     ticks: int = 0
     late_ticks: int = 0
     missed_ticks: int = 0
+    scene_fault: str = ""  # what the scene of the robot's package raised
 
     @property
     def actual_s(self) -> float:
@@ -100,6 +101,7 @@ def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track
             stamp_ns = getattr(message, "stamp_ns", 0)
             track.points += _points(track, scenes, scenes.of_truth(message), status, stamp_ns)
     track.points = track.points or believed
+    track.scene_fault = scenes.fault
     seen = {name for point in track.points for name in point.objects}
     track.outlines = {name: outline for name, outline in track.outlines.items() if name in seen}
     track.goals = [_goal(goal, scenes) for each in executed.values() for goal in scenes.of_subgoals(each)]

@@ -13,6 +13,8 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 
+NO_MOTION = "no action was executed, expected a run that moves"
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor picture`."""
@@ -34,8 +36,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output("--output", arguments.output, (".png", *SUFFIXES))
     tracks = [recorded_track(plain(path.stem), path) for path in arguments.recording]
-    if still := [str(path) for path, track in zip(arguments.recording, tracks, strict=True) if not track.points]:
-        raise UsageError(f"{still[0]}: no action was executed, expected a run that moves")
+    for path, track in zip(arguments.recording, tracks, strict=True):
+        if not track.points:
+            why = f"its robot's scene cannot be drawn: {track.scene_fault}" if track.scene_fault else NO_MOTION
+            raise UsageError(f"{path}: {why}")
     draw = move_paths if arguments.output.suffix.lower() in SUFFIXES else draw_paths
     with whole_output(arguments.output) as picture:
         draw(tracks, picture)

@@ -76,7 +76,7 @@ def _write(arguments: argparse.Namespace) -> int:
         added, feed, damage = add_scenes(source, target)
     warn(source, damage)
     if feed.fault:
-        print(f"the scene of {feed.robot}: {feed.fault}", file=sys.stderr)
+        print(plain(f"the scene of {feed.robot}: {feed.fault}"), file=sys.stderr)
     print(f"{target}: {added} messages added")
     return 0 if added else 1
 

@@ -48,6 +48,14 @@ def test_a_request_that_is_no_text_is_sent_as_its_escapes():
     assert sent == [b"(atball \\udcff)"]
 
 
+def test_a_request_that_no_router_passes_on_is_refused_before_it_is_sent():
+    """It was told that there is no such service."""
+    caller, sent = session()
+    refusal = "the request has 70000 bytes, expected at most 65536"
+    assert caller.call_all("exec/goal", "a" * 70_000) == [(False, refusal)]
+    assert sent == []
+
+
 @pytest.mark.parametrize("accepted", [True, False])
 def test_a_response_of_a_stranger_that_is_no_text_is_replaced(accepted):
     part = SimpleNamespace(payload=zenoh.ZBytes(b"\xff\xfe ok"))

@@ -10,6 +10,7 @@ from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ExecStatus, Provenance
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.track import READ, track_of
+from tailor.tools.main import main
 
 GOLDEN = Path(__file__).parents[3] / "data" / "golden"
 
@@ -37,3 +38,13 @@ def test_names_in_a_recording_reach_no_terminal_as_control_characters():
     assert {point.name for point in track.points} == {"drive\\x1b[2J"}
     assert track.result.startswith("failed: ")
     assert track.result.isprintable()
+
+
+def test_a_scene_that_raises_is_named_where_nothing_can_be_drawn(tmp_path, monkeypatch, capsys):
+    """It passed for a run in which nothing was executed."""
+    monkeypatch.setattr("tailor.robots.soccer_scene.of_truth", lambda message: {}["colour"])
+    monkeypatch.setattr("tailor.robots.soccer_scene.of_belief", lambda values: {}["colour"])
+    path = GOLDEN / "soccer-approach.mcap"
+    assert main(["picture", str(path), "-o", str(tmp_path / "p.png")]) == 2
+    expected = "its robot's scene cannot be drawn: of_belief: KeyError: 'colour'"
+    assert capsys.readouterr().err == f"tailor picture: {path}: {expected}\n"
