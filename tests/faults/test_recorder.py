@@ -1,6 +1,8 @@
 """Faults of the machine under a recorder: the file stays readable, the bus continues."""
 
 import json
+import os
+import socket
 import subprocess
 import sys
 import time
@@ -178,3 +180,18 @@ def test_a_recorder_does_not_start_on_a_full_disk(tmp_path, flags):
     (line,) = done.stderr.splitlines()
     assert line == f"tailor record: {tmp_path}/r.mcap: File too large, expected a writable path"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_recorder_that_is_a_service_begins_on_a_full_disk_and_waits_for_room(tmp_path):
+    """A service that ends with exit code 2 is not started again."""
+    full, supervisor = LIMITED.replace(str(MAX_BYTES), "1000"), tmp_path / "socket"
+    with bus_system() as (_, endpoint, _), socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as reports:
+        reports.bind(str(supervisor))
+        reports.settimeout(PATIENCE_S)
+        command = [sys.executable, "-c", full, "record", "-o", str(tmp_path / "r.mcap"), "--connect", endpoint]
+        recorder = subprocess.Popen(command, env={**os.environ, "NOTIFY_SOCKET": str(supervisor)})
+        try:
+            assert b"READY=1" in reports.recv(4096)
+        finally:
+            recorder.terminate()
+            recorder.wait(PATIENCE_S)

@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _write(arguments)
     bus = RecorderBus(arguments, SNAPSHOT_KEY if arguments.snapshot else "")
     with bus.opened():
-        recorder = _recorder(arguments, bus.queue, wanted)
+        recorder = _recorder(arguments, bus.queue, wanted, waits_for_room=notifier.supervised)
         if not (arguments.quiet or notifier.supervised):
             print(_beginning(arguments), file=sys.stderr, flush=True)
         notifier.ready()
@@ -121,7 +121,10 @@ def _write(arguments: argparse.Namespace) -> int:
     return 0 if accepted else 2 if absent else 1
 
 
-def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection) -> Recorder | SnapshotRecorder:
+def _recorder(
+    arguments: argparse.Namespace, queue: IngestQueue, wanted: Selection, waits_for_room: bool
+) -> Recorder | SnapshotRecorder:
+    """The recorder; on a full disk a person's is refused, but a service would not be started again."""
     limits = Limits(round(arguments.max_size * 1e6), round(arguments.max_duration * 1e9))
     named: str | None = arguments.output
     path = Path(datetime.now().strftime("tailor-%Y%m%d-%H%M%S.mcap") if named is None else named)
@@ -130,7 +133,8 @@ def _recorder(arguments: argparse.Namespace, queue: IngestQueue, wanted: Selecti
     metadata = RecordingMetadata(version("tailor"), wall_ns())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        check_room(path.parent)
+        if not waits_for_room:
+            check_room(path.parent)
         if arguments.snapshot:
             return SnapshotRecorder(path, queue, wanted, SnapshotBuffer(round(arguments.snapshot * 1e9)), metadata)
         return Recorder(path, queue, wanted, limits, metadata)
