@@ -6,7 +6,7 @@ from tailor.executive.planning.plans.plan import Result
 
 KEEPS_TO_ONE = "the search is exhausted, but of a condition over all with alternatives it keeps to one throughout"
 UNSETTLED = "the search is exhausted, but for some plan it gave up to look for a schedule without interference"
-UNSHORTENED = "the search is exhausted, but of some plan it gave up to look for the shortest schedule"
+UNSHORTENED = "the search is exhausted, but some plan may have a shorter schedule"
 
 
 def search_gap(keeps_to_one: bool, unsettled: bool, unshortened: bool) -> str:

@@ -26,7 +26,7 @@ Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
 
 
 class UnsettledError(Exception):
-    """Too many choices between the orders of interfering events have failed to tell whether there is a schedule."""
+    """The choices between the orders of interfering events that were tried do not tell whether there is a schedule."""
 
 
 class Schedule(NamedTuple):
@@ -40,11 +40,13 @@ class Event(NamedTuple):
     """The facts that a start, an end or a timed literal reads, adds and removes, as far as it may.
 
     `reads` are those among the facts that some event changes: a quantifier may range over millions of others.
+    `uncertain` are changed under a condition alone, which may not hold, or both added and removed.
     """
 
     reads: frozenset[Fact] = frozenset()
     added: frozenset[Fact] = frozenset()
     removed: frozenset[Fact] = frozenset()
+    uncertain: frozenset[Fact] = frozenset()
 
     def interferes(self, other: Event) -> bool:
         """Whether the two must not happen at the same time."""
@@ -54,6 +56,10 @@ class Event(NamedTuple):
             and self.added.isdisjoint(other.removed)
             and other.added.isdisjoint(self.removed)
         )
+
+    def certain(self) -> Event:
+        """The event without the changes that may not happen."""
+        return self._replace(added=self.added - self.uncertain, removed=self.removed - self.uncertain)
 
 
 def separated(
@@ -73,7 +79,7 @@ def separated(
       None if there is no such schedule. Without durations the steps follow one another: the same orderings.
 
     Raises:
-      UnsettledError: Too many choices failed.
+      UnsettledError: Too many choices failed, or events were kept apart whose effects may not happen.
     """
     if not isinstance(orderings, TemporalNetwork):
         return Schedule(orderings)
@@ -82,23 +88,29 @@ def separated(
     shortest: TemporalNetwork | None = None
     chosen: Choices = []
     revised = 0
+    is_certain = True  # whether all events that were kept apart must be
     while network is not None:
         if shortest is None or makespan(network) < makespan(shortest):
             pair = _coincident(network, events)
+            if pair is not None:
+                first, second = (events[node - FIRST].certain() for node in pair)
+                is_certain &= first.interferes(second)
             if pair is None:
                 shortest = network
             elif (further := _with_pair(network, pair, chosen)) is not None:
                 network = further
                 continue
         if shortest is not None and makespan(shortest) == makespan(orderings):
-            break
+            return Schedule(shortest)
         revised += len(chosen)
         if revised > MAX_REVISED:
             if shortest is None:
                 raise UnsettledError
             return Schedule(shortest, is_shortest=False)
         network = _with_last_reversed(orderings, chosen)
-    return Schedule(shortest) if shortest is not None else None
+    if shortest is None and not is_certain:
+        raise UnsettledError
+    return Schedule(shortest, is_certain) if shortest is not None else None
 
 
 def makespan(orderings: Orderings) -> float:
@@ -180,12 +192,16 @@ def _both_ends(name: Fact, world: StaticWorld) -> tuple[_Moments, _Moments]:
 def _changes(part: _Moments, world: StaticWorld) -> Event:
     """The event, without what it reads."""
     changes: tuple[set[Fact], set[Fact]] = set(), set()
+    certain: set[Fact] = set()
     for effect in part.schema.effects:
         if effect.when in part.moments:
             for inner in bindings(effect.variables, part.binding, world):
                 fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
                 changes[effect.positive].add(fact)
-    return Event(added=frozenset(changes[True]), removed=frozenset(changes[False]))
+                if not effect.condition:
+                    certain.add(fact)
+    removed, added = map(frozenset, changes)
+    return Event(added=added, removed=removed, uncertain=((added | removed) - certain) | (added & removed))
 
 
 def _reads(part: _Moments, changed: Changed, world: StaticWorld) -> frozenset[Fact]:
