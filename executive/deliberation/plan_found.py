@@ -44,6 +44,8 @@ def validated(
     plan = result.plan
     if plan is not None and (fault := (yield from planning.validation(plan, domain, planning.Objects(problem)))):
         plan, cause = None, Cause(Reason.PLAN_UNSOUND, fault)
+    if plan is not None and (limit := planning.too_large_to_execute(plan, domain, problem)):
+        plan, cause = None, Cause(Reason.SEARCH_LIMIT, limit)
     return PlanFound(result.status, way, plan, result.generated, result.visited, cause)
 
 
@@ -77,4 +79,7 @@ def _parsed(
         return Cause(Reason.PLAN_UNREADABLE, f"{answer.reason}; {error}")
     yield
     plan = yield from planning.completion(parsed, domain, problem)
-    return plan if isinstance(plan, planning.Plan) else Cause(Reason.PLAN_UNSOUND, plan)
+    if not isinstance(plan, planning.Plan):
+        return Cause(Reason.PLAN_UNSOUND, plan)
+    limit = planning.too_large_to_execute(plan, domain, problem)
+    return Cause(Reason.PLAN_UNSOUND, limit) if limit else plan

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
         number_of_steps,
     )
     from tailor.executive.planning.search import GroundCache, Search
-    from tailor.executive.planning.semantics.action_effects import apply_action
+    from tailor.executive.planning.semantics.action_effects import apply_action, too_large_to_execute
     from tailor.executive.planning.semantics.completion import completed, completion
     from tailor.executive.planning.semantics.state import Objects
     from tailor.executive.planning.semantics.suffix import relink, shortest_suffix, suffix
@@ -76,6 +76,7 @@ __all__ = [
     "relink",
     "shortest_suffix",
     "suffix",
+    "too_large_to_execute",
     "validate",
     "validate_every_order",
     "validation",
@@ -85,6 +86,7 @@ _MODULES = {
     "AnytimeSearch": "anytime",
     "quality": "plan_quality",
     "apply_action": "semantics.action_effects",
+    "too_large_to_execute": "semantics.action_effects",
     "completed": "semantics.completion",
     "completion": "semantics.completion",
     "DEFAULT": "settings",

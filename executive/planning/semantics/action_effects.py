@@ -2,12 +2,40 @@
 
 from __future__ import annotations
 
+import math
+
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.pddl.language import Domain, Effect
+from tailor.executive.planning.pddl.formula_text import format_atom
+from tailor.executive.planning.pddl.language import Action, Domain, Effect
 from tailor.executive.planning.pddl.problem import Problem
+from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.semantics.large_formulas import holding
+from tailor.executive.planning.semantics.large_formulas import holding, parts_of
 from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
+
+MAX_APPLIED = 10_000  # parts of the effects of an executed action, applied in one tick: some milliseconds
+
+
+def too_large_to_execute(plan: Plan, domain: Domain, problem: Problem) -> str:
+    """Names the first step whose effects `apply_action` cannot evaluate within a tick; "" if there is none."""
+    objects = Objects(problem)
+    sizes = {action.name: _size(action, objects) for action in domain.actions}
+    for step in plan.steps:
+        size = sizes[step.action[0]]
+        if size > MAX_APPLIED:
+            return (
+                f"step {step.id}: the effects of {format_atom(step.action)} have {size} instances, too many for a tick"
+            )
+    return ""
+
+
+def _size(action: Action, objects: Objects) -> int:
+    """The number of atoms and connectives in the effects of an action, with all objects for their variables."""
+    return sum(
+        (1 + sum(parts_of(condition.formula, objects, MAX_APPLIED) for condition in effect.condition))
+        * math.prod(len(objects.of(variable)) for variable in effect.variables)
+        for effect in action.effects
+    )
 
 
 def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:

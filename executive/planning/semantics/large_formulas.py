@@ -20,7 +20,7 @@ def holding(formula: Formula, binding: Binding, state: State, objects: Objects) 
     Raises:
       TooLargeError: The limit of `objects` is reached.
     """
-    if _parts(formula, objects) <= PORTION_PARTS:
+    if parts_of(formula, objects, PORTION_PARTS) <= PORTION_PARTS:
         return holds(formula, binding, state, objects)
     if isinstance(formula, Not):
         return not (yield from holding(formula.part, binding, state, objects))
@@ -42,7 +42,7 @@ def supporting(formula: Formula, binding: Binding, state: State, objects: Object
     Raises:
       TooLargeError: The limit of `objects` is reached.
     """
-    if _parts(formula, objects) <= PORTION_PARTS:
+    if parts_of(formula, objects, PORTION_PARTS) <= PORTION_PARTS:
         return support(formula, binding, state, objects)
     if isinstance(formula, Not):
         return (yield from supporting(negation(formula.part), binding, state, objects))
@@ -79,24 +79,24 @@ def _parts_of(formula: Formula, binding: Binding, objects: Objects) -> Iterator[
 
 
 def _counted(part: Formula, objects: Objects) -> int:
-    count = _parts(part, objects)
+    count = parts_of(part, objects, PORTION_PARTS)
     return count if count <= PORTION_PARTS else 0
 
 
-def _parts(formula: Formula, objects: Objects) -> int:
-    """The number of atoms and connectives with all objects for the variables; of a large formula some larger one."""
+def parts_of(formula: Formula, objects: Objects, most: int) -> int:
+    """The number of atoms and connectives with all objects for the variables; beyond `most` some larger number."""
     match formula:
         case Not(part):
-            return 1 + _parts(part, objects)
+            return 1 + parts_of(part, objects, most)
         case And(parts) | Or(parts):
             count = 1
             for part in parts:
-                count += _parts(part, objects)
-                if count > PORTION_PARTS:
+                count += parts_of(part, objects, most)
+                if count > most:
                     break
             return count
         case Quantified(_, variables, part):
-            count = 1 + _parts(part, objects)
+            count = 1 + parts_of(part, objects, most)
             for variable in variables:
                 count *= len(objects.of(variable))
             return count

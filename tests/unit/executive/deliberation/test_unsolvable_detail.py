@@ -9,6 +9,7 @@ import pytest
 from tailor.executive import planning
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.planning.semantics import action_effects
 from tests.support.toy_domain import PROBLEM, line_context
 from tests.unit.executive.core.test_core import drive
 
@@ -41,6 +42,13 @@ def test_a_search_that_came_to_its_limit_proves_nothing_of_the_state():
     assert cause is not None
     assert cause.reason is Reason.SEARCH_LIMIT
     assert " from " not in cause.detail
+
+
+def test_a_plan_whose_effects_do_not_fit_into_a_tick_is_refused_by_its_step(monkeypatch):
+    assert cause_of(line_context(), goal="(visited a)") is None
+    monkeypatch.setattr(action_effects, "MAX_APPLIED", 2)
+    limit = "step 1: the effects of (slide home a) have 3 instances, too many for a tick"
+    assert cause_of(line_context(), goal="(visited a)") == Cause(Reason.SEARCH_LIMIT, limit)
 
 
 @pytest.mark.parametrize(("facts", "ends"), [(12, "(visited p10)"), (13, "...")])

@@ -5,7 +5,15 @@ import random
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import PacedWork, completion, format_plan, parse_plan, shortest_suffix, validation
+from tailor.executive.planning import (
+    PacedWork,
+    completion,
+    format_plan,
+    parse_plan,
+    shortest_suffix,
+    too_large_to_execute,
+    validation,
+)
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
 from tailor.executive.planning.pddl.syntax.s_expressions import read_form
 from tailor.executive.planning.plans.portions import FREE_PORTIONS, PORTIONS, completed_work
@@ -115,6 +123,18 @@ def test_effects_over_many_objects_take_several_ticks(monkeypatch, effect):
     assert reuse.result == linked
     assert sum(budget.before_check) > 2 * MOST
     assert max(budget.before_check) <= MOST
+
+
+def test_the_size_of_effects_is_counted_without_trying_their_objects():
+    things = " ".join(f"o{n}" for n in range(11))
+    for effect, size in (("(wet ?a ?b ?c ?d)", 14_642), ("(when (not (wet ?d ?c ?b ?a)) (wet ?a ?b ?c ?d))", 43_924)):
+        domain, problem = read(
+            FLOOD.format(effect), f"(define (problem x) (:domain flood) (:objects {things}) (:goal (g)))"
+        )
+        fault = too_large_to_execute(parse_plan("1:(flood)\n"), domain, problem)
+        assert fault == f"step 1: the effects of (flood) have {size} instances, too many for a tick"
+    domain, problem = own("kitchen-s1")
+    assert too_large_to_execute(solve(domain, problem).plan, domain, problem) == ""
 
 
 def test_what_has_too_many_instances_is_not_checked_to_the_end(monkeypatch):
