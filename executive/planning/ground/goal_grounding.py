@@ -60,14 +60,12 @@ class Portions:
         self._left = PORTION_PARTS
         return True
 
-    def condition(self, formula: Formula, binding: Binding) -> Grounding:
-        """As `ground`, for a condition that many actions share: at once if it is small."""
+    def is_small(self, formula: Formula) -> bool:
+        """Whether a condition, which many actions share, has no more parts than a portion: it is ground at once."""
         known = self._small.get(id(formula))
         if known is None:
             known = self._small[id(formula)] = formula, _parts(formula, self.world) <= PORTION_PARTS
-        if known[1]:
-            return ground(formula, binding, self.world, self.facts)
-        return (yield from self.ground(formula, binding, True))
+        return known[1]
 
     def ground(self, formula: Formula, binding: Binding, positive: bool) -> Grounding:
         """As `ground_formula.ground`, part by part and in the same order."""

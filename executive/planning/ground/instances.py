@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
 from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
-from tailor.executive.planning.ground.goal_grounding import Portions
+from tailor.executive.planning.ground.goal_grounding import PORTION_PARTS, Portions
 from tailor.executive.planning.ground.ground_action import (
     INSTANT,
     MOMENTS,
@@ -68,12 +68,12 @@ def instance(
     stated = yield from _effects(schema, binding, portions)
     required = {(part, span[1]) for part, span in conditions}
     useful = [effect for effect in stated if (effect.literal, effect.moment) not in required]
-    if portions.is_due(len(useful)):
+    if len(useful) > PORTION_PARTS:
         yield
     effects, restored = _without_restored(useful, stated, facts)
     if not effects:
         return None
-    if portions.is_due(len(conditions)):
+    if len(conditions) > PORTION_PARTS:
         yield
     return GroundAction(
         number,
@@ -101,7 +101,10 @@ def _conditions(
     """The ground conditions with their spans, in order; None if one is false or two of one span contradict."""
     grounded: list[tuple[GroundCondition, Span]] = []
     for condition in conditions:
-        result = yield from portions.condition(condition.formula, binding)
+        if portions.is_small(condition.formula):  # without a generator: nearly all are
+            result = ground(condition.formula, binding, portions.world, portions.facts)
+        else:
+            result = yield from portions.ground(condition.formula, binding, True)
         if result == FALSE:
             return None
         for part in conjuncts(result):
@@ -119,7 +122,7 @@ def _effects(schema: Action, binding: Binding, portions: Portions) -> Generator[
         moment = _span(effect.when, world.temporal)[0]
         facts.limit.depth += bool(effect.variables)
         for inner in bindings(effect.variables, binding, world):
-            if portions.is_due():
+            if effect.variables and portions.is_due():
                 yield
             conditions: Conditions | None = ()
             if effect.condition:
@@ -156,7 +159,10 @@ def _without_restored(
     kept: list[GroundEffect] = []
     restored: list[GroundEffect] = []
     for effect in effects:
-        additions = failures.get((effect.literal ^ 1, effect.moment), [])
+        additions = failures.get((effect.literal ^ 1, effect.moment))
+        if additions is None:  # nearly all
+            kept.append(effect)
+            continue
         facts.spend(max(len(additions) - 1, 0))  # each excludes one more condition
         variants = excluding(effect.conditions, additions)
         kept += [effect._replace(conditions=variant) for variant in variants]
