@@ -146,13 +146,29 @@ def test_ticks_are_counted_and_every_input_has_a_number(recording):
     assert all(number > 0 for report in run.ticks for number in report.input_sequences)
 
 
+@pytest.fixture
+def launched():
+    """Starts systems; where a test fails before they end, they end with it."""
+    systems = []
+
+    def start(*flags):
+        systems.append(subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT))
+        return systems[-1]
+
+    yield start
+    for up in systems:
+        if up.poll() is None:
+            up.terminate()
+            up.communicate(timeout=PATIENCE_S)
+
+
 @pytest.mark.promise("P11")
 @pytest.mark.xdist_group("live")
 @pytest.mark.parametrize("sent", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)])
-def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_path, sent, measured):
+def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(launched, tmp_path, sent, measured):
     path, endpoint = tmp_path / "run.mcap", free_endpoint()
     flags = ("--seed", "1", "--record", str(path), "--connect", endpoint)
-    up = subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    up = launched(*flags)
     wait_until(lambda: answers(endpoint), "router")
     with open_client(endpoint, role="people") as session:
         truth = session.inbox(("truth",), "agilo")
@@ -172,9 +188,9 @@ def test_ctrl_c_sends_a_zero_command_closes_the_file_and_leaves_no_process(tmp_p
 
 
 @pytest.mark.xdist_group("live")
-def test_ctrl_c_while_the_simulator_starts_is_a_stop_and_no_failure():
+def test_ctrl_c_while_the_simulator_starts_is_a_stop_and_no_failure(launched):
     flags = ("--seed", "1", "--no-scene", "--connect", free_endpoint())
-    up = subprocess.Popen(tailor("up", "soccer", *flags), stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    up = launched(*flags)
     wait_until(lambda: b"\0sim\0" in b"".join(command_lines(up.pid)), "start of the simulator")
     up.send_signal(signal.SIGINT)
     printed, _ = up.communicate(timeout=PATIENCE_S)

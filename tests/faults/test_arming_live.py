@@ -11,37 +11,24 @@ import pytest
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState, ExecStatus
-from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tests.support.bus_system import answers, child_pid, free_endpoint
 from tests.support.patience import wait_until
+from tests.support.watched_robot import QUIET_S, WatchedRobot
 
 MOVING_MPS = 0.2
-QUIET_S = 2.0  # so long nothing may move; the executive asks within half a second
 
 
-class Launched:
+class Launched(WatchedRobot):
     """A system that `tailor up` started, as another session on the bus sees it."""
 
     def __init__(self, up, session):
-        self.up, self.inbox = up, session.inbox(("driver", "status", "truth"), "agilo")
-        self.outlet = session.publisher("arm_request", "agilo")
-        self.latest, self.fastest_mps = {}, 0.0
-
-    def poll(self):
-        for sample in self.inbox.drain():
-            self.latest[type(sample.message)] = sample.message
-            if isinstance(sample.message, SoccerGroundTruth):
-                self.fastest_mps = max(self.fastest_mps, abs(sample.message.v), abs(sample.message.omega))
-        return self.latest
+        super().__init__(session)
+        self.up, self.outlet = up, session.publisher("arm_request", "agilo")
 
     def moves(self):
         self.fastest_mps = 0.0
         self.poll()
         return self.fastest_mps > MOVING_MPS
-
-    def at_rest(self):
-        truth = self.poll().get(SoccerGroundTruth)
-        return truth is not None and abs(truth.v) < 0.01 and abs(truth.omega) < 0.01
 
     def arm(self, arm=True):
         self.outlet.publish(ArmRequest(arm, False, self.latest[ExecStatus].sender if arm else "", 0))
@@ -107,13 +94,8 @@ def test_only_people_arm_again(launched, number):
 
 def stays_until_people_arm_it(launched, way):
     wait_until(launched.at_rest, "robot at rest")
-    launched.fastest_mps = 0.0
-    ends = time.monotonic() + QUIET_S
-    while time.monotonic() < ends:
-        launched.poll()
-        time.sleep(0.01)
+    assert launched.fastest_in(QUIET_S) < 0.02, way
     assert launched.latest[DriverState].mode != "armed", way
-    assert launched.fastest_mps < 0.02, way
     wait_until(lambda: ExecStatus in launched.poll(), "executive")
     launched.arm()
     wait_until(launched.moves, "the robot moves when people arm it")

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import time
 from functools import partial
 
 import pytest
@@ -13,31 +12,19 @@ from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.messages.soccer import SoccerGroundTruth
 from tests.support.bus_system import answers, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
+from tests.support.watched_robot import QUIET_S, WatchedRobot
 
-QUIET_S = 2.0  # after arming a robot with an open goal moves within half a second
 
-
-class System:
+class System(WatchedRobot):
     """A launched robot as people at a shell see it."""
 
     def __init__(self, endpoint, session):
-        self.endpoint, self.inbox = endpoint, session.inbox(("driver", "status", "truth"), "agilo")
-        self.latest, self.fastest_mps = {}, 0.0
-
-    def poll(self):
-        for sample in self.inbox.drain():
-            self.latest[type(sample.message)] = sample.message
-            if isinstance(sample.message, SoccerGroundTruth):
-                self.fastest_mps = max(self.fastest_mps, abs(sample.message.v), abs(sample.message.omega))
-        return self.latest
+        super().__init__(session)
+        self.endpoint = endpoint
 
     def moves(self):
         truth = self.poll().get(SoccerGroundTruth)
         return truth is not None and abs(truth.v) > 0.2
-
-    def rests(self):
-        truth = self.poll().get(SoccerGroundTruth)
-        return truth is not None and abs(truth.v) < 0.01 and abs(truth.omega) < 0.01
 
     def mode(self):
         return self.poll()[DriverState].mode
@@ -50,12 +37,8 @@ class System:
         return done.stdout.strip()
 
     def stays(self):
-        wait_until(self.rests, "robot at rest")
-        self.fastest_mps, ends = 0.0, time.monotonic() + QUIET_S
-        while time.monotonic() < ends:
-            self.poll()
-            time.sleep(0.01)
-        assert self.fastest_mps < 0.02
+        wait_until(self.at_rest, "robot at rest")
+        assert self.fastest_in(QUIET_S) < 0.02
         assert self.mode() == "armed"
 
 

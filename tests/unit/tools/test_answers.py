@@ -14,6 +14,9 @@ class Impostor:
     def call(self, key, text):
         return False, f"{CLEARS_THE_SCREEN}accepted"
 
+    def call_all(self, key, text):
+        return [self.call(key, text)]
+
 
 @pytest.mark.parametrize(("command", "words", "code"), [(goal, ["(at a)"], 2), (record, ["--write"], 1)])
 def test_an_answer_is_printed_without_control_characters(monkeypatch, capsys, command, words, code):

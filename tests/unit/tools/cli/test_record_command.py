@@ -35,7 +35,7 @@ def test_the_file_is_whole_before_the_session_is_closed(monkeypatch):
             return Health()
 
     monkeypatch.setattr(record, "RecorderBus", Bus)
-    monkeypatch.setattr(record, "_recorder", lambda *_: Recorder())
+    monkeypatch.setattr(record, "_recorder", lambda *_, **__: Recorder())
     monkeypatch.setattr(record, "_record", lambda *_, **__: None)
     parser = argparse.ArgumentParser()
     record.configure(parser)
@@ -87,7 +87,7 @@ def test_a_folder_without_a_name_is_no_recording(folder):
     parser = argparse.ArgumentParser()
     record.configure(parser)
     with pytest.raises(UsageError, match="is a folder, expected the name of a new file"):
-        record._recorder(parser.parse_args(["--output", folder]), None, None)
+        record._recorder(parser.parse_args(["--output", folder]), None, None, waits_for_room=False)
 
 
 def test_a_name_that_looks_like_markup_ends_no_recording(monkeypatch):

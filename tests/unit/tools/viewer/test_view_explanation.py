@@ -23,7 +23,7 @@ from tailor.tools.viewer.explanations.situation import Situation
 from tests.support import synthetic_run
 from tests.support.synthetic_models import LIBRARY, MODELS, PoseDuration, approach_dribble
 
-SETTINGS = replace(synthetic_run.SETTINGS, gain_k_std=0.0)  # the optimum, however little it gains
+SETTINGS = synthetic_run.SETTINGS
 
 
 @pytest.fixture(scope="module")
