@@ -11,7 +11,7 @@ from tailor.executive import domains
 from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
 from tailor.schemas.installed import domain_names
 from tests.contract.random_temporal import random_task
-from tests.support.planning_problems import DATA, OWN, SHARED, read, solve
+from tests.support.planning.planning_problems import DATA, OWN, SHARED, read, solve
 from tests.unit.executive.planning.pddl.test_language import IRON, TIMED, WORKSHOP
 
 kairos = pytest.importorskip("kairos", reason="kairos-planner is not installed: no second opinion")

@@ -7,8 +7,8 @@ the giving back away and finds no plan.
 import pytest
 
 from tailor.executive.planning import FlawOrder, Settings, validate
-from tests.support.pddl_mutations import text_of, tree_of
-from tests.support.planning_problems import SHARED, load, read, solve
+from tests.support.planning.pddl_mutations import text_of, tree_of
+from tests.support.planning.planning_problems import SHARED, load, read, solve
 
 ROVERS, SATELLITE = SHARED / "ipc" / "rovers-strips", SHARED / "ipc" / "satellite-simpletime"
 pytestmark = pytest.mark.skipif(not ROVERS.exists(), reason="../shared/pddl is absent: no competition problems")

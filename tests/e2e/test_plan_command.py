@@ -15,7 +15,7 @@ from tailor.executive.planning import DEFAULT, AnytimeSearch, parse_plan, valida
 from tailor.tools.benchmarks.planning_scale import problem_text
 from tailor.tools.main import main
 from tailor.tools.plan_search import limits, sources
-from tests.support.planning_problems import DATA, own, printed
+from tests.support.planning.planning_problems import DATA, own, printed
 from tests.unit.executive.planning.pddl.test_language import LAMPS, SWITCHES
 
 OWN = DATA / "own"

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from tailor.executive.planning import PlanTextError, completed, format_links, parse_plan, validate
-from tests.support.planning_problems import DATA, own
+from tests.support.planning.planning_problems import DATA, own
 
 NUMBERS = ("0", "-1", "9" * 20, "9" * 400, "9" * 5000, "1e999", "inf", "nan", "123456789012", "0.000001")
 LETTERS = "()<>:-> \n;[]not0\0"

@@ -19,8 +19,8 @@ from tailor.executive.planning import (
     validate,
 )
 from tests.support.cpu_time import min_cpu_s
-from tests.support.pddl_mutations import mutated, regrown
-from tests.support.planning_problems import DATA, OWN, read, solve
+from tests.support.planning.pddl_mutations import mutated, regrown
+from tests.support.planning.planning_problems import DATA, OWN, read, solve
 from tests.unit.executive.planning.pddl.test_derived import BLOCKS, SWAP
 from tests.unit.executive.planning.pddl.test_language import IRON, LAMPS, SWITCHES, TIMED, WORKSHOP
 

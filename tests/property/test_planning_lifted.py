@@ -4,7 +4,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.planning import Settings, validate
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 NAMES = ["?x", "?y", "a", "b"]
 ATOMS = [*(f"({p} {name})" for p in "pq" for name in NAMES), *(f"(s {n} {m})" for n in NAMES for m in NAMES), "(r)"]

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from tailor.executive.planning import Settings, validate
 from tailor.executive.planning.semantics.state import Objects, fact_of, holds
 from tests.property.test_planning_lifted import DURATIVE, tasks
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 
 def met(conditions, when, binding, state, objects):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tailor.executive.planning import FlawOrder, Settings, validate
 from tailor.executive.planning.semantics.action_effects import apply_action
 from tailor.executive.planning.semantics.state import Objects, holds
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 FACTS = ["(p a)", "(p b)", "(q a)", "(q b)", "(r)"]
 LITERALS = st.sampled_from(FACTS + [f"(not {fact})" for fact in FACTS])

@@ -11,7 +11,7 @@ from tailor.executive.planning import PlanTextError, parse_plan, validate
 from tailor.runtime.processes.planner_process import MAX_OUTPUT_BYTES, PlannerProcess
 from tailor.schemas.errors import UsageError
 from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
-from tests.support.planning_problems import DATA, own, printed
+from tests.support.planning.planning_problems import DATA, own, printed
 from tests.support.stalls import repeat_on_stall
 
 ROOT = Path(__file__).resolve().parents[3]

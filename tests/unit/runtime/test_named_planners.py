@@ -14,7 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.systems.deployment import Deployment, executive_config
 from tailor.tools.main import main
 from tailor.tools.plan_search.sources import external
-from tests.support.planning_problems import DATA, own
+from tests.support.planning.planning_problems import DATA, own
 
 KITCHEN = [str(DATA / "own" / f"kitchen-{name}.pddl") for name in ("domain", "s2")]
 DURATIVE = [str(DATA / "own" / f"kitchen-durative-{name}.pddl") for name in ("domain", "s2")]

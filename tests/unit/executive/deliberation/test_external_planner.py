@@ -18,7 +18,7 @@ from tailor.executive.planning import format_links, format_plan, parse_domain, p
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, Sample
 from tests.replay.test_replay_core import FickleBudget
-from tests.support.planning_problems import solve
+from tests.support.planning.planning_problems import solve
 from tests.support.toy_domain import SENDER, inputs, line_context
 
 TICK = 100_000_000

@@ -18,7 +18,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.replay import RecordedTick, replay
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tests.replay.test_replay_core import FickleBudget
-from tests.support.planning_problems import own, read
+from tests.support.planning.planning_problems import own, read
 from tests.support.toy_domain import driver, line_context, odometry
 
 TICK = 100_000_000

@@ -18,7 +18,7 @@ from tailor.executive.planning import (
 )
 from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.semantics import suffix as plan_suffix
-from tests.support.planning_problems import many_cups, own, solve
+from tests.support.planning.planning_problems import many_cups, own, solve
 
 PROBLEMS = ("kitchen-s2", "kitchen-reach-s2", "kitchen-durative-s2", "soccer-typed-p2", "cups")
 

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import AnytimeSearch, FlawOrder, Settings, parse_plan, validate
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 DOMAIN = """(define (domain d) (:requirements :adl :durative-actions :timed-initial-literals)
   (:constants a b) (:predicates (p) (q) (h ?x) (fixed) (g) (n))

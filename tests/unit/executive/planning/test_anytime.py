@@ -17,7 +17,7 @@ from tailor.executive.planning import (
     quality,
     validate,
 )
-from tests.support.planning_problems import own, read, solve
+from tests.support.planning.planning_problems import own, read, solve
 
 ROADS = """(define (domain roads) (:requirements :strips :action-costs)
   (:predicates (at ?x) (road ?x ?y)) (:functions (total-cost) - number (length ?x ?y) - number)

@@ -14,7 +14,7 @@ from tailor.executive.planning import (
     validate,
     validate_every_order,
 )
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 DOMAIN = """(define (domain d) (:predicates (r) (s)) (:functions (total-cost) (f ?x) (g ?x))
   (:action act :parameters (?x) :effect (and (r) (increase (total-cost) {}))))"""

@@ -10,7 +10,7 @@ from tailor.executive.planning.ground.durations import TimeGrid, duration_range,
 from tailor.executive.planning.ground.grounding import static_world
 from tailor.executive.planning.pddl.language import DurationBound, Function, Number, Operation
 from tailor.executive.planning.semantics.durations import allowed_durations
-from tests.support.planning_problems import OWN, own, read, solve
+from tests.support.planning.planning_problems import OWN, own, read, solve
 
 TOLERANCES = (1e-6, 0.001, 0.01, 0.25, 0.3, 0.5, 1, 7, 1000)
 DURATIVE = [name for name in OWN if "durative" in name]

@@ -24,7 +24,7 @@ from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.semantics.links import linking
 from tailor.executive.planning.semantics.state import Objects
 from tailor.schemas.installed import domain_names
-from tests.support.planning_problems import DATA, OWN, own, printed, read, solve
+from tests.support.planning.planning_problems import DATA, OWN, own, printed, read, solve
 
 RICH_DOMAIN = """(define (domain rich) (:requirements :typing :fluents :timed-initial-literals :durative-actions)
   (:types cup plate - thing robot) (:constants dock - object)

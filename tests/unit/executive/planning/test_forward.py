@@ -6,7 +6,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import GOAL, Search, Settings, format_links, validate
 from tailor.executive.planning.forward import forward_search, justification
 from tailor.executive.planning.forward.strips_task import StripsAction
-from tests.support.planning_problems import OWN, many_cups, own, read, solve
+from tests.support.planning.planning_problems import OWN, many_cups, own, read, solve
 
 FORWARD = Settings(engine="forward")
 CLASSICAL = [name for name in OWN if "durative" not in name]

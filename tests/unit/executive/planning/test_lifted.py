@@ -5,7 +5,7 @@ import pytest
 from tailor.executive.planning import Settings, format_links, parse_plan, validate
 from tailor.executive.planning.lifted.bindings import Bindings
 from tests.support.cpu_time import min_cpu_s
-from tests.support.planning_problems import own, read, solve
+from tests.support.planning.planning_problems import own, read, solve
 
 LIFTED = Settings(ground=False)
 

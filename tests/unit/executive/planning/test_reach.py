@@ -11,7 +11,7 @@ from tailor.executive.planning import DEFAULT, MATCHING, GroundCache, Search, Se
 from tailor.executive.planning.ground import grounding
 from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings
 from tailor.tools.planning.options import GROUND_LIMIT
-from tests.support.planning_problems import OWN, own, read, solve
+from tests.support.planning.planning_problems import OWN, own, read, solve
 
 LOGISTICS = """(define (domain logistics) (:requirements :strips)
   (:predicates (obj ?o) (truck ?t) (location ?l) (city ?c) (at ?o ?l) (in ?o ?t) (in-city ?l ?c))

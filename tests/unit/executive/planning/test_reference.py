@@ -13,7 +13,7 @@ from tailor.executive.planning import (
     validate,
 )
 from tailor.executive.planning.settings import DEFAULT_RANKINGS
-from tests.support.planning_problems import DATA, OWN, SHARED, load, own, printed, reference, solve
+from tests.support.planning.planning_problems import DATA, OWN, SHARED, load, own, printed, reference, solve
 
 # VHPOP 2.2.1 under `g-mwloc`
 FIGURES = {problem: row for (_, problem), row in reference(DATA, "22-g-mwloc").items()}

@@ -21,7 +21,7 @@ from tailor.executive.planning.flaws.flaw_orders import NAMED, parse_flaw_order
 from tailor.executive.planning.flaws.ranking import NAMES
 from tailor.runtime.gc_freeze import gc_disabled
 from tailor.schemas.errors import UsageError
-from tests.support.planning_problems import own, read, solve
+from tests.support.planning.planning_problems import own, read, solve
 
 DOOR = """(define (domain door) (:predicates (open) (shut) (in))
   (:action enter :parameters () :precondition (and (open) (shut)) :effect (in))

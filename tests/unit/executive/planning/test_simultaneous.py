@@ -6,7 +6,7 @@ import pytest
 
 from tailor.executive.planning import GroundCache, Search, Settings, validate
 from tailor.executive.planning.ground.durations import TimeGrid, time_grid
-from tests.support.planning_problems import UNLIMITED, read, solve
+from tests.support.planning.planning_problems import UNLIMITED, read, solve
 
 PREDICATES = "(:constants a b) (:predicates (p ?x) (q) (r) (g))"
 HEAD = f"(define (domain d) (:requirements :adl :durative-actions :timed-initial-literals) {PREDICATES}"

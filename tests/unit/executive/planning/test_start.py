@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from tailor.executive import planning
-from tests.support.planning_problems import DATA
+from tests.support.planning.planning_problems import DATA
 
 FILES = [str(DATA / "own" / f"soccer-{part}.pddl") for part in ("domain", "p1")]
 SLOW = ("numpy", "matplotlib", "multiprocessing", "difflib", "tailor.tools.figures")

@@ -15,7 +15,7 @@ from tailor.executive.planning import (
     parse_plan,
     validate,
 )
-from tests.support.planning_problems import OWN, own, printed, read, solve
+from tests.support.planning.planning_problems import OWN, own, printed, read, solve
 
 FIGURE_10 = """Initial 0 : (robot pos1) (ball pos2) (final pos3)
 

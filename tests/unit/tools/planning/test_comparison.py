@@ -9,7 +9,7 @@ import time
 import pytest
 
 from tailor.tools.main import main
-from tests.support.planning_problems import DATA, printed
+from tests.support.planning.planning_problems import DATA, printed
 
 OWN = DATA / "own"
 KITCHEN = [str(OWN / "kitchen-domain.pddl"), str(OWN / "kitchen-s1.pddl")]

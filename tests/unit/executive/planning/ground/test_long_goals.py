@@ -4,7 +4,7 @@ from tailor.executive.planning.ground.ground_task import make_task
 from tailor.executive.planning.ground.grounding import ground_actions, static_world
 from tailor.executive.planning.pddl import problem as problems
 from tailor.executive.planning.plans.portions import completed_work
-from tests.support.planning_problems import read
+from tests.support.planning.planning_problems import read
 
 DOMAIN = """(define (domain d) (:predicates (lit ?l))
   (:action switch :parameters (?l) :precondition () :effect (lit ?l)))"""

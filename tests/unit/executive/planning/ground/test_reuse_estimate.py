@@ -4,7 +4,7 @@ from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasu
 from tailor.executive.planning.ground_plans.open_conditions import refine_open
 from tailor.executive.planning.ground_plans.plan_estimates import GroundEstimates
 from tailor.executive.planning.structures.linked_list import cells_of
-from tests.support.planning_problems import refined
+from tests.support.planning.planning_problems import refined
 
 DOMAIN = """(define (domain radio) (:predicates (on) (plugged) (reported) (sent))
   (:action plug :effect (plugged))

@@ -8,7 +8,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import Search, Settings
 from tailor.executive.planning.ground import grounding
 from tailor.executive.planning.ground.ground_formula import GroundingLimit
-from tests.support.planning_problems import read
+from tests.support.planning.planning_problems import read
 
 DOMAIN = """(define (domain d) (:predicates (p ?x ?y ?z) (g ?x)) (:action make :parameters (?x) :effect (p ?x ?x ?x))
   (:action use :parameters (?x) :precondition (forall (?y ?z) (not (p ?x ?y ?z))) :effect (g ?x)))"""

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.planning.ground_plans.flaw_measures import GroundFlawMeasures
 from tailor.executive.planning.structures.linked_list import cells_of
-from tests.support.planning_problems import refined
+from tests.support.planning.planning_problems import refined
 
 DOMAIN = """(define (domain radio) (:predicates (free) (reported) (sent))
   (:action report :precondition (free) :effect (and {} (reported)))

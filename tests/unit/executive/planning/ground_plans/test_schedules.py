@@ -7,7 +7,7 @@ import pytest
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import AnytimeSearch, Settings, parse_plan, validate
 from tailor.executive.planning.ground_plans import separation
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 DOMAIN = """(define (domain d) (:requirements :durative-actions :timed-initial-literals :conditional-effects)
   (:predicates (open-a) (open-b) (open-c) (x) (z) (y) (done-a) (done-b) (done-c))

@@ -22,7 +22,7 @@ from tests.property.test_planning_soundness import (
     conjunction,
     problems,
 )
-from tests.support.planning_problems import OWN, own, read, solve
+from tests.support.planning.planning_problems import OWN, own, read, solve
 
 INDEXES = range(4)
 STEPS = st.lists(st.tuples(st.integers(0, 2), st.sampled_from("ab"), st.sampled_from("ab")), max_size=4)

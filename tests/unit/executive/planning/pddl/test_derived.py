@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.planning import MATCHING, PddlError, Settings, Unsupported, parse_domain, parse_problem, validate
 from tailor.executive.planning.pddl.substitution import substituted
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 BLOCKS = """
 (define (domain blocks) (:requirements :strips :derived-predicates)

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.executive.planning import Settings, validate
 from tailor.executive.planning.ground import grounding
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 DOMAIN = """(define (domain d) (:requirements :adl) (:types big small)
   (:predicates (p ?o) (q ?o) (sel ?o) (s ?o ?u))

@@ -13,7 +13,7 @@ from tailor.executive.planning import (
     parse_problem,
     validate,
 )
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 
 
 @pytest.fixture(params=[MATCHING, Settings(ground=False)], ids=["ground", "lifted"])

@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.executive.planning import PlanTextError, completed, format_links, parse_plan, validate
-from tests.support.planning_problems import read
+from tests.support.planning.planning_problems import read
 
 SWITCH = """(define (domain d) (:requirements :durative-actions :timed-initial-literals) (:predicates (p) (q) (r))
   (:durative-action wait :parameters () :duration (= ?duration 5) :effect (at end (r)))

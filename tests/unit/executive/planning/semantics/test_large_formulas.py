@@ -21,7 +21,7 @@ from tailor.executive.planning.semantics import completion as completion_module
 from tailor.executive.planning.semantics import large_formulas, state
 from tailor.executive.planning.semantics import suffix as suffix_module
 from tailor.executive.planning.semantics.state import PORTION_PARTS, Objects, TooLargeError, holds, support
-from tests.support.planning_problems import own, read, solve
+from tests.support.planning.planning_problems import own, read, solve
 
 WORLD = read(
     "(define (domain d) (:types t u) (:predicates (p ?x) (q ?x ?y)))",

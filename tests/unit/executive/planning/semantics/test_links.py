@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from tailor.executive.planning import GOAL, Settings, parse_plan, relink, suffix, validate
 from tests.property.test_planning_soundness import LITERALS, VARIABLE_LITERALS, conjunction, problems
-from tests.support.planning_problems import read, solve
+from tests.support.planning.planning_problems import read, solve
 from tests.unit.executive.planning.pddl.test_language import LAMPS, SWITCHES, TIMED, WORKSHOP
 
 

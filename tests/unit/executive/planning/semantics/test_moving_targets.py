@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.executive.planning import parse_plan, validate
-from tests.support.planning_problems import read
+from tests.support.planning.planning_problems import read
 
 DOMAIN = """(define (domain d) (:requirements :adl :durative-actions) (:types big small none)
   (:constants a - big b - small) (:predicates (p ?o) (s ?o ?u) (q) (g))

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from tailor.executive.planning import GOAL, Link, Literal, Settings, completed, parse_plan, relink, suffix, validate
-from tests.support.planning_problems import OWN, own, read, solve
+from tests.support.planning.planning_problems import OWN, own, read, solve
 
 
 def changed(plan, position, **changes):

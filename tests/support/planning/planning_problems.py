@@ -12,8 +12,8 @@ from tailor.executive.planning.ground_plans.partial_plan import initial_plan
 from tailor.executive.planning.plans.portions import completed_work
 from tailor.tools.benchmarks.planning_scale import problem_text
 
-DATA = Path(__file__).parents[1] / "data" / "pddl"
-SHARED = Path(__file__).parents[3] / "shared" / "pddl"
+DATA = Path(__file__).parents[2] / "data" / "pddl"
+SHARED = Path(__file__).parents[4] / "shared" / "pddl"
 OWN = tuple(sorted(p.stem for p in (DATA / "own").glob("*.pddl") if not p.stem.endswith("-domain")))
 UNLIMITED = 10**9  # checks
 

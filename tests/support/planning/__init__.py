@@ -1,0 +1,1 @@
+"""PDDL for tests: random problems and texts that were altered."""
