@@ -27,9 +27,7 @@ class Greedy:
 def greedy(sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator) -> Greedy:
     """The greedy answer of `settings.greedy_checks` batches for each action; see `GreedySearch`."""
     search = GreedySearch(sequence, models, settings, rng)
-    while not search.finished:
-        search.advance_action(CheckBudget(settings.greedy_checks))
-        search.end_action()
+    search.complete(settings.greedy_checks)
     return Greedy(search.values, search.evaluations)
 
 
@@ -83,6 +81,12 @@ class GreedySearch:
             self.advance_action(budget)
             if self._solver is not None and not self._solver.finished:
                 return
+            self.end_action()
+
+    def complete(self, checks: int) -> None:
+        """Finish the search with at most so many batches for each action."""
+        while not self.finished:
+            self.advance_action(CheckBudget(checks))
             self.end_action()
 
     def advance_action(self, budget: Budget) -> None:

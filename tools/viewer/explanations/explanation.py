@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.alternatives import Alternatives, alternatives
@@ -65,8 +64,8 @@ def explain(
 ) -> Explanation | None:
     """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
 
-    The greedy choice is searched anew from `rng`. `objects` are those of the decision
-    if they were published in the same tick.
+    The greedy choice is searched anew from `rng`. `objects` are those of the decision if they were published in the
+    same tick.
     """
     sequence = sequence_of(message, library, objects)
     if sequence is None or message.horizon < 1:
@@ -104,9 +103,7 @@ def greedy_values(
     Against the executive's hasty first answer, refinement would seem to gain more.
     """
     search = GreedySearch(sequence, models, settings, rng, start=greedy(sequence, models, settings, rng).values)
-    while not search.finished:
-        search.advance_action(CheckBudget(GREEDY_CHECKS))
-        search.end_action()
+    search.complete(GREEDY_CHECKS)
     return search.values
 
 
