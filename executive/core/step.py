@@ -16,7 +16,7 @@ from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.interfaces.outlet import at_rest, messages_of
+from tailor.executive.interfaces.outlet import Command, at_rest, messages_of
 from tailor.schemas.messages import ArmRequest
 
 REARM_NS = 500_000_000  # a request without an effect is repeated
@@ -29,10 +29,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
     cut_off = interrupted(context, before, state, inputs)
     receive_answers(context, state, inputs)
     state, finished = act(context, state)
-    outputs: list[Output] = []
-    if disarmed(context, state) is None:
-        commands = messages_of(context.domain, state.command, context.stamp(state.now_ns))
-        outputs.extend(Output(topic, command) for topic, command in commands)
+    outputs = _commands(context, state, state.command, state.now_ns)
     state, request = _disarm_request(context, state) if inputs.stopping else _arm_request(context, state)
     if request is not None:
         outputs.append(Output("self_arm", request))
@@ -69,11 +66,15 @@ def step(
 
 def at_once_at_rest(context: Context, state: State, now_ns: int) -> tuple[Output, ...]:
     """The zero command, if the driver obeys: for a shell whose tick of this time raised, before it ends."""
+    return tuple(_commands(context, state, at_rest(context.domain.axes, state.command), now_ns))
+
+
+def _commands(context: Context, state: State, command: Command, now_ns: int) -> list[Output]:
+    """The messages of a command; none if the driver does not obey."""
     if disarmed(context, state) is not None:
-        return ()
-    zero = at_rest(context.domain.axes, state.command)
-    commands = messages_of(context.domain, zero, context.stamp(now_ns))
-    return tuple(Output(topic, command) for topic, command in commands)
+        return []
+    messages = messages_of(context.domain, command, context.stamp(now_ns))
+    return [Output(topic, message) for topic, message in messages]
 
 
 def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | None]:
