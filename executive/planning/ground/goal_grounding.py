@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Generator
 
 from tailor.executive.planning.ground.ground_formula import (
@@ -14,7 +13,8 @@ from tailor.executive.planning.ground.ground_formula import (
     joined,
     operands,
 )
-from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified
+from tailor.executive.planning.pddl.formula_size import parts_of
+from tailor.executive.planning.pddl.language import Atom, Equal, Formula, Not, Quantified
 from tailor.executive.planning.structures.connectives import FALSE, TRUE
 
 Grounding = Generator[None, None, GroundCondition]  # yields after each portion
@@ -24,19 +24,6 @@ PORTION_PARTS = 256  # some milliseconds; the goals of everyday problems have fe
 def ground_in_portions(formula: Formula, world: StaticWorld, facts: FactTable) -> Grounding:
     """The condition, facts and errors of `ground` for a formula without free variables; yields between portions."""
     return Portions(world, facts).ground(formula, {}, True)
-
-
-def _parts(formula: Formula, world: StaticWorld) -> int:
-    """The number of atoms and connectives with all objects for the variables."""
-    match formula:
-        case Not(part):
-            return 1 + _parts(part, world)
-        case And(parts) | Or(parts):
-            return 1 + sum(_parts(part, world) for part in parts)
-        case Quantified(_, variables, part):
-            return 1 + _parts(part, world) * math.prod(len(world.choices(variable)) for variable in variables)
-        case _:
-            return 1
 
 
 class Portions:
@@ -64,7 +51,8 @@ class Portions:
         """Whether a condition, which many actions share, has no more parts than a portion: it is ground at once."""
         known = self._small.get(id(formula))
         if known is None:
-            known = self._small[id(formula)] = formula, _parts(formula, self.world) <= PORTION_PARTS
+            parts = parts_of(formula, self.world.choices, PORTION_PARTS)
+            known = self._small[id(formula)] = formula, parts <= PORTION_PARTS
         return known[1]
 
     def ground(self, formula: Formula, binding: Binding, positive: bool) -> Grounding:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.pddl.formula_size import parts_of
 from tailor.executive.planning.pddl.formula_text import format_atom
 from tailor.executive.planning.pddl.language import Action, Domain, Effect
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
-from tailor.executive.planning.semantics.large_formulas import holding, parts_of
+from tailor.executive.planning.semantics.large_formulas import holding
 from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
 
 MAX_APPLIED = 10_000  # parts of the effects of an executed action, applied in one tick: some milliseconds
@@ -32,7 +33,7 @@ def too_large_to_execute(plan: Plan, domain: Domain, problem: Problem) -> str:
 def _size(action: Action, objects: Objects) -> int:
     """The number of atoms and connectives in the effects of an action, with all objects for their variables."""
     return sum(
-        (1 + sum(parts_of(condition.formula, objects, MAX_APPLIED) for condition in effect.condition))
+        (1 + sum(parts_of(condition.formula, objects.of, MAX_APPLIED) for condition in effect.condition))
         * math.prod(len(objects.of(variable)) for variable in effect.variables)
         for effect in action.effects
     )

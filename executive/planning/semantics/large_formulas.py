@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tailor.executive.planning.pddl.formula_size import parts_of
 from tailor.executive.planning.pddl.language import And, Formula, Literal, Not, Or, Quantified
 from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.semantics.state import PORTION_PARTS, Binding, Objects, State, holds, negation, support
@@ -20,7 +21,7 @@ def holding(formula: Formula, binding: Binding, state: State, objects: Objects) 
     Raises:
       TooLargeError: The limit of `objects` is reached.
     """
-    if parts_of(formula, objects, PORTION_PARTS) <= PORTION_PARTS:
+    if parts_of(formula, objects.of, PORTION_PARTS) <= PORTION_PARTS:
         return holds(formula, binding, state, objects)
     if isinstance(formula, Not):
         return not (yield from holding(formula.part, binding, state, objects))
@@ -42,7 +43,7 @@ def supporting(formula: Formula, binding: Binding, state: State, objects: Object
     Raises:
       TooLargeError: The limit of `objects` is reached.
     """
-    if parts_of(formula, objects, PORTION_PARTS) <= PORTION_PARTS:
+    if parts_of(formula, objects.of, PORTION_PARTS) <= PORTION_PARTS:
         return support(formula, binding, state, objects)
     if isinstance(formula, Not):
         return (yield from supporting(negation(formula.part), binding, state, objects))
@@ -79,26 +80,5 @@ def _parts_of(formula: Formula, binding: Binding, objects: Objects) -> Iterator[
 
 
 def _counted(part: Formula, objects: Objects) -> int:
-    count = parts_of(part, objects, PORTION_PARTS)
+    count = parts_of(part, objects.of, PORTION_PARTS)
     return count if count <= PORTION_PARTS else 0
-
-
-def parts_of(formula: Formula, objects: Objects, most: int) -> int:
-    """The number of atoms and connectives with all objects for the variables; beyond `most` some larger number."""
-    match formula:
-        case Not(part):
-            return 1 + parts_of(part, objects, most)
-        case And(parts) | Or(parts):
-            count = 1
-            for part in parts:
-                count += parts_of(part, objects, most)
-                if count > most:
-                    break
-            return count
-        case Quantified(_, variables, part):
-            count = 1 + parts_of(part, objects, most)
-            for variable in variables:
-                count *= len(objects.of(variable))
-            return count
-        case _:
-            return 1
