@@ -15,28 +15,42 @@ DOMAIN = """(define (domain d) (:predicates (p ?x ?y ?z) (g ?x)) (:action make :
 INSTANCE = 30**2  # steps of grounding that one action takes
 
 
-@pytest.mark.parametrize("bindings", [grounding.MAX_BINDINGS, 0], ids=["all", "reachable"])
-def test_quantified_conditions_are_ground_in_several_units_of_the_budget(monkeypatch, bindings):
-    monkeypatch.setattr(grounding, "MAX_BINDINGS", bindings)
-    spent, before_check, real = [0], [], GroundingLimit.spend
+class MeteredBudget(CheckBudget):
+    """Notes how many steps of grounding were taken before each check."""
+
+    def __init__(self):
+        super().__init__(10**9)
+        self.steps, self.at_check = 0, [0]
+
+    def spent(self):
+        self.at_check.append(self.steps)
+        return super().spent()
+
+    def most_between_checks(self):
+        return max(after - before for before, after in pairwise(self.at_check))
+
+
+@pytest.fixture
+def metered(monkeypatch):
+    budget, real = MeteredBudget(), GroundingLimit.spend
 
     def counted(limit, steps=1):
-        spent[0] += steps
+        budget.steps += steps
         real(limit, steps)
 
-    class MeteredBudget(CheckBudget):
-        def spent(self):
-            before_check.append(spent[0])
-            spent[0] = 0
-            return super().spent()
-
     monkeypatch.setattr(GroundingLimit, "spend", counted)
+    return budget
+
+
+@pytest.mark.parametrize("bindings", [grounding.MAX_BINDINGS, 0], ids=["all", "reachable"])
+def test_quantified_conditions_are_ground_in_several_units_of_the_budget(monkeypatch, metered, bindings):
+    monkeypatch.setattr(grounding, "MAX_BINDINGS", bindings)
     objects = " ".join(f"o{n}" for n in range(30))
     domain, problem = read(DOMAIN, f"(define (problem x) (:domain d) (:objects {objects}) (:goal (g o0)))")
-    result = Search(domain, problem, Settings(engine="forward", node_limit=1)).advance(MeteredBudget(10**9))
+    result = Search(domain, problem, Settings(engine="forward", node_limit=1)).advance(metered)
     assert result is not None
-    assert sum(before_check) > 30 * INSTANCE
-    assert max(before_check) < grounding.MAX_UNCHECKED + 2 * INSTANCE
+    assert metered.at_check[-1] > 30 * INSTANCE
+    assert metered.most_between_checks() < grounding.MAX_UNCHECKED + 2 * INSTANCE
 
 
 FORALL = """(define (domain d) (:predicates (p ?x ?y) (q ?x ?y) (g))
@@ -45,24 +59,12 @@ FORALL = """(define (domain d) (:predicates (p ?x ?y) (q ?x ?y) (g))
 
 
 @pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
-def test_one_huge_action_is_made_in_many_units_of_the_budget(monkeypatch, ground):
-    spent, at_check, real = [0], [0], GroundingLimit.spend
-
-    def counted(limit, steps=1):
-        spent[0] += steps
-        real(limit, steps)
-
-    class MeteredBudget(CheckBudget):
-        def spent(self):
-            at_check.append(spent[0])
-            return super().spent()
-
-    monkeypatch.setattr(GroundingLimit, "spend", counted)
+def test_one_huge_action_is_made_in_many_units_of_the_budget(metered, ground):
     objects = " ".join(f"o{n}" for n in range(65))
     domain, problem = read(FORALL, f"(define (problem x) (:domain d) (:objects {objects}) (:goal (g)))")
-    Search(domain, problem, Settings(ground=ground, engine="pocl", node_limit=1)).advance(MeteredBudget(10**9))
-    assert spent[0] > 25_000
-    assert max(after - before for before, after in pairwise(at_check)) < 2000
+    Search(domain, problem, Settings(ground=ground, engine="pocl", node_limit=1)).advance(metered)
+    assert metered.steps > 25_000
+    assert metered.most_between_checks() < 2000
 
 
 def test_schemata_with_too_many_literals_for_variables_are_refused_by_name():
