@@ -43,7 +43,8 @@ def _redirected_if_better(context: Context, state: State, running: Running, old:
     """A better subgoal for the running action, if it comes early and its predicted gain exceeds the threshold."""
     settings = context.settings
     early = running.elapsed_s(state.now_ns) <= settings.refine_while_running_s
-    if not early or old.choice.total_s - new.choice.total_s < settings.adopt_gain_s:
+    gain_s = old.choice.total_s - new.choice.total_s
+    if not early or gain_s <= 0 or gain_s < settings.adopt_gain_s:
         return state
     task = replace(state.task, decision=new)
     return replace(state, task=redirected(context, task, running, state.now_ns))

@@ -54,7 +54,9 @@ def shortened(context: Context, state: State) -> State:
     if found is None:
         return state
     sequence, choice = found
-    decision = replace(decided, sequence=sequence, choice=choice, watch=decided.watch.of(sequence))
+    decision = replace(
+        decided, sequence=sequence, choice=choice, made_ns=state.now_ns, watch=decided.watch.of(sequence)
+    )
     task = redirected(context, replace(task, decision=decision), task.running, state.now_ns)
     return replace(state, task=task, deliberation=None)  # its search was for the way with the subgoal
 
@@ -65,7 +67,7 @@ def redirected(context: Context, task: Task, running: Running, now_ns: int) -> T
     following = first_action(task.decision, context.models, now_ns)
     if starts_another(task.decision, running):
         return replace(task, running=following, finished=task.finished + 1)
-    return replace(task, running=running.redirected(following, now_ns))
+    return replace(task, running=running.redirected(following, task.decision.made_ns))
 
 
 def starts_another(decision: Decision, running: Running) -> bool:

@@ -78,7 +78,7 @@ def _with_deliberation(context: Context, state: State) -> State:
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
-    deliberation = Deliberation(context, state.belief, number, source)
+    deliberation = Deliberation(context, state.belief, state.now_ns, number, source)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 

@@ -43,9 +43,12 @@ class Running:
         lower_s, upper_s = self.interval_s
         return f"outside of {max(lower_s, 0.0):.1f}..{upper_s:.1f} s, the predicted 90 % interval"
 
-    def redirected(self, following: Running, now_ns: int) -> Running:
-        """The next values of the same action, which goes on; its predictions count from its start."""
-        elapsed_s, interval_s = self.elapsed_s(now_ns), following.interval_s
+    def redirected(self, following: Running, made_ns: int) -> Running:
+        """The next values of the same action, which goes on; its predictions count from its start.
+
+        `made_ns` is the time of the belief that they were predicted from.
+        """
+        elapsed_s, interval_s = max(0.0, self.elapsed_s(made_ns)), following.interval_s
         return replace(
             following,
             started_ns=self.started_ns,

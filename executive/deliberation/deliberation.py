@@ -35,18 +35,20 @@ class Decision:
     sequence: ActionSequence
     choice: Choice
     number: int  # of its deliberation
+    made_ns: int  # time of the belief that it was made from: its predictions count from there
     watch: BeliefMonitor = field(compare=False, repr=False)  # detects that the belief left the sequence's bindings
 
 
 class Deliberation:
     """Decision making from one snapshot of the belief; owned by one state, changed in place."""
 
-    def __init__(self, context: Context, belief: Belief, number: int, source: PlanSource) -> None:
+    def __init__(self, context: Context, belief: Belief, now_ns: int, number: int, source: PlanSource) -> None:
         """Prepare a deliberation; all work is done in `advance`.
 
         Args:
           context: Domain, models and settings.
           belief: The belief from which parameters are instantiated.
+          now_ns: Time of the belief.
           number: Serial number of this deliberation; with the seed it fixes every random draw.
           source: Source of its plan.
         """
@@ -59,6 +61,7 @@ class Deliberation:
         self.refinement: Refinement | None = None
         self._context = context
         self._belief = belief
+        self._now_ns = now_ns
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._found: PlanFound | None = None  # whose plan is being compared
         self._plan_choice: PlanChoice | None = None  # between the source's plan and others
@@ -94,7 +97,7 @@ class Deliberation:
         if choice is None or not choice.valid:
             return None
         assert self._watch is not None
-        return Decision(self.plan, self.sequence, choice, self.number, self._watch)
+        return Decision(self.plan, self.sequence, choice, self.number, self._now_ns, self._watch)
 
     def nothing_to_do(self) -> bool:
         """Whether the goal already holds: the plan has no steps."""

@@ -56,3 +56,4 @@ def test_predictions_of_a_redirected_action_count_from_its_start() -> None:
     assert (later.predicted_s, later.interval_s) == (4.0, (3.0, 6.0))
     assert later.started_ns == START_NS
     assert np.isfinite(later.time_limit_s())
+    assert running.redirected(started(Calibrated()), START_NS - 100_000_000).predicted_s == running.predicted_s
