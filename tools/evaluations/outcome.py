@@ -44,6 +44,7 @@ class Task:
       zoo: Folder of action models; empty: the shipped ones.
       goal: PDDL goal that replaces the scenario's; empty: the scenario's own.
       drawn: Quantities that are pinned to a random value for each seed: label, quantity, lower, upper.
+      tick_ms: CPU time for the deliberation of each tick; 0: a number of checks, with which a run repeats exactly.
     """
 
     domain: str
@@ -52,6 +53,7 @@ class Task:
     zoo: str = ""
     goal: str = ""
     drawn: tuple[tuple[str, str, float, float], ...] = ()
+    tick_ms: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
 from tailor.tools.evaluations.progress import tracked
+from tailor.tools.evaluations.tick_budget import tick_budget
 from tailor.tools.learning.gathering.choosing_models import cached_models
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.lockstep.run import SENDER, Run, run_lockstep
@@ -83,7 +84,7 @@ def run_task(task: Task, variant: Variant, seed: int) -> tuple[Run, Context]:
     context, start = _context(task, variant, seed)
     body, events = body_of(task.domain, task.profile), events_of(context.scenario)
     world = World(body, start, seed + variant.noise, events)
-    return run_lockstep(context, world, limit_s=LIMIT_S), context
+    return run_lockstep(context, world, limit_s=LIMIT_S, new_budget=tick_budget(task.tick_ms)), context
 
 
 def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple[list[float], list[float]]:

@@ -19,7 +19,7 @@ from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample,
 from tailor.simnodes.world import World
 from tailor.tools.lockstep.driver_link import DriverLink, Transport
 
-CHECKS_PER_TICK = 300  # about what an idle machine grants in 60 ms
+CHECKS_PER_TICK = 300  # with which nearly every search ends in its tick; 60 ms of CPU grant 10 to 120
 DELIBERATION = partial(CheckBudget, CHECKS_PER_TICK)
 SENDER = "00" * 16
 

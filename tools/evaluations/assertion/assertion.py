@@ -17,6 +17,7 @@ from tailor.tools.evaluations.pages.report import Report, configure_report, publ
 from tailor.tools.evaluations.paired_comparison import mean_interval, share_interval
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
+from tailor.tools.evaluations.tick_budget import budget_remark, configure_tick_budget
 
 SCENARIOS = {  # with objects, by domain
     "soccer": ("opponents", "opponents-approach", "opponents-dribble"),
@@ -44,6 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--episodes", type=at_least(2, "--episodes"), default=500, help="starts of each scenario (default %(default)s)"
     )
     parser.add_argument("--scenarios", nargs="+", metavar="NAME", help="scenarios (default: all with objects)")
+    configure_tick_budget(parser)
     configure_report(parser)
 
 
@@ -56,10 +58,12 @@ def run(arguments: argparse.Namespace) -> int:
     for scenario in scenarios:
         if scenario not in SCENARIOS[domain]:
             raise UsageError(f"--scenarios {scenario}: expected some of: {', '.join(SCENARIOS[domain])}")
-        task, starts = Task(domain, scenario, zoo=arguments.zoo), seeds.starts(arguments.episodes)
+        task = Task(domain, scenario, zoo=arguments.zoo, tick_ms=arguments.tick_ms)
+        starts = seeds.starts(arguments.episodes)
         found = run_all(task, variants(), starts, arguments.jobs, arguments.store, scenario)
         rows.append({"scenario": scenario, **row(found, starts)})
-    report = Report("assertion", "Subgoal assertion among objects", rows, REMARKS, {}, seeds.provenance)
+    remarks = (*REMARKS, *budget_remark(arguments.tick_ms))
+    report = Report("assertion", "Subgoal assertion among objects", rows, remarks, {}, seeds.provenance)
     publish_report(report, arguments.json, arguments.report)
     return 0 if all(map(reached, rows)) else 1
 

@@ -19,6 +19,7 @@ from tailor.tools.evaluations.refinement.paired_outcomes import is_better
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
 from tailor.tools.evaluations.seeds import seeds_of
+from tailor.tools.evaluations.tick_budget import budget_remark, configure_tick_budget
 from tailor.tools.lockstep.bodies import body_of
 
 POINTS, ORACLE_RUNS = 18, 40
@@ -74,6 +75,7 @@ def configure(
                         help=f"angles that the oracle tries (default {POINTS})")  # fmt: skip
     parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), metavar="N",
                         help=f"runs a start where choices are too many for all (default {ORACLE_RUNS})")  # fmt: skip
+    configure_tick_budget(parser)
     configure_replicas(parser)
     configure_report(parser)
 
@@ -101,7 +103,8 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
             greedy_s, refined_s = ([pair[side].duration_s for pair in both] for side in (0, 1))
             plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
     few = [] if all("ci95" in row for row in rows) else [FEW_REMARK]
-    remarks = [*_paper(named, domain), *REMARKS, *few, *([ORACLE_REMARK] if arguments.oracle else [])]
+    remarks = [*_paper(named, domain), *REMARKS, *few, *budget_remark(arguments.tick_ms)]
+    remarks += [ORACLE_REMARK] if arguments.oracle else []
     over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)
     publish_report(report, arguments.json, arguments.report)

@@ -27,7 +27,7 @@ def rows_of(
     """Rows for each scenario and horizon, one over all scenarios; and the pairs of the shortest horizon."""
     # Starts of its own for each scenario: those of one seed share noise, and temperatures or poses.
     own = {scenario: replace(seeds, first=seeds.first + k * arguments.episodes) for k, scenario in enumerate(scenarios)}
-    found = {scenario: _run(Task(domain, scenario, arguments.profile, arguments.zoo), own[scenario], arguments)
+    found = {scenario: _run(_task(domain, scenario, arguments), own[scenario], arguments)
              for scenario in scenarios}  # fmt: skip
     rows: list[dict[str, Any]] = []
     first: dict[Start, Pair] = {}
@@ -52,6 +52,10 @@ def _run(task: Task, seeds: Seeds, arguments: argparse.Namespace) -> Found:
     return run_all(task, variants, seeds.starts(arguments.episodes), arguments.jobs, arguments.store, task.scenario)
 
 
+def _task(domain: str, scenario: str, arguments: argparse.Namespace) -> Task:
+    return Task(domain, scenario, arguments.profile, arguments.zoo, tick_ms=arguments.tick_ms)
+
+
 def _pairs(scenario: str, found: Found, baseline: int, horizon: int) -> dict[Start, Pair]:
     one, other = found[f"h{baseline}"], found[f"h{horizon}"]
     return {(scenario, seed): (one[seed], other[seed]) for seed in sorted(one)}
@@ -67,7 +71,7 @@ def _over_shorter(scenario: str, found: Found, shorter: int, horizon: int) -> di
 
 def _oracle(scenario: str, domain: str, seeds: Seeds, found: Found, arguments: argparse.Namespace) -> dict[str, Any]:
     greedy, refined = found[f"h{GREEDY}"], found[f"h{arguments.horizon[0]}"]
-    task = Task(domain, scenario, arguments.profile, arguments.zoo)
+    task = _task(domain, scenario, arguments)
     example = next((outcome for outcome in greedy.values() if outcome.achieved), None)
     free = [] if example is None else subgoal_parameters(example)
     if not free:

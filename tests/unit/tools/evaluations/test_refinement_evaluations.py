@@ -308,7 +308,7 @@ def test_scenarios_have_starts_of_their_own(monkeypatch):
         return {variant.name: {seed: replace(DONE, seed=seed) for seed in seeds} for variant in variants}
 
     monkeypatch.setattr(refinement_rows, "run_all", run_all)
-    given = argparse.Namespace(profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0)
+    given = argparse.Namespace(profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0, tick_ms=0.0)
     rows, _ = refinement_rows.rows_of("arm", ["letter-A", "letter-B"], Seeds(100, {}), given)
     assert ran == {"letter-A": range(100, 104), "letter-B": range(104, 108)}
     assert [row["n"] for row in rows] == [4, 4, 8]
