@@ -13,6 +13,7 @@ from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
 
+SHOWN_S = 0.005  # smaller differences print as nothing
 GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
@@ -38,7 +39,7 @@ def explanation_lines(explanation: Explanation, best_cost: float, decision: Deci
         lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
     long_search = long_search_text(explanation.chosen_cost, best_cost)
     certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost))
-    return [*lines, long_search, certified, search_text(decision)]
+    return [*lines, long_search, certified, search_text(decision, explanation.chosen_cost)]
 
 
 def parameter_text(free: FreeParameter) -> str:
@@ -60,7 +61,7 @@ def long_search_text(chosen_cost: float, best_cost: float) -> str:
     if not math.isfinite(best_cost):
         return "a long search finds no valid choice either"
     gap_s = chosen_cost - best_cost
-    if gap_s < 0.005:
+    if gap_s < SHOWN_S:
         return "a long search finds no better choice"
     return f"a long search finds a choice that is {gap_s:.2f} s ({100 * gap_s / best_cost:.1f} %) better"
 
@@ -89,7 +90,7 @@ def certificate_text(gap_pct: float | None) -> str:
     return f"certified: within {gap_pct:.1f} % of the models' optimum"
 
 
-def search_text(decision: Decision) -> str:
+def search_text(decision: Decision, chosen_cost: float) -> str:
     """Effort of the search, and outcome of the action."""
     parts = []
     report = decision.report
@@ -101,6 +102,8 @@ def search_text(decision: Decision) -> str:
             f"{_counted(decision.ticks, 'tick')}, {state}; "
             f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
         )
+        if math.isfinite(chosen_cost) and chosen_cost - report.best_s >= SHOWN_S:
+            parts[-1] += ", found after the action had begun and not adopted"
     if decision.finished is not None:
         end = decision.finished
         parts.append(f"{end.action} {end.outcome} after {end.actual_s:.1f} s, predicted {end.predicted_s:.1f} s")

@@ -12,10 +12,11 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.refinement import Refinement
 from tailor.models.features.features import Quantity
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import Subgoals
+from tailor.schemas.messages import RefinementReport, Subgoals
 from tailor.tools.figures.alternatives import draw_alternatives
+from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text
+from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text, search_text
 from tailor.tools.viewer.explanations.decided_sequence import sequence_of
 from tailor.tools.viewer.explanations.explanation import explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
@@ -177,6 +178,13 @@ def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None
 )
 def test_the_gap_to_a_long_search_is_given_in_seconds_and_per_cent(chosen, best, words) -> None:
     assert words in long_search_text(chosen, best)
+
+
+@pytest.mark.parametrize(("chosen_s", "late"), [(8.58, False), (8.78, True), (float("inf"), False)])
+def test_a_better_choice_that_was_not_adopted_is_named(chosen_s, late) -> None:
+    report = RefinementReport(0, 9, 2, "DifferentialEvolution", True, 12096, 109, 8.77, 8.58)
+    text = search_text(Decision(8.9, Subgoals(0, 7, 2), report, 0.18, 3), chosen_s)
+    assert ("found after the action had begun and not adopted" in text) == late
 
 
 def test_what_rounds_to_zero_has_no_sign():
