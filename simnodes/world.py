@@ -7,11 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from tailor.schemas.errors import UsageError
+from tailor.schemas.parsed_files import shown
 from tailor.simnodes.body import STEP_NS, Body, Reading
 
+EXPECTED = "a list of Readings (simnodes/body.py)"
 NOISE_STREAM = 1  # of the seed; the scenario is drawn from stream 0
 
 
@@ -79,13 +83,19 @@ class World:
 
         Raises:
           ValueError: `duration_ns` is no multiple of STEP_NS.
+          UsageError: The body returned no readings; an empty list is one, None is not.
         """
         if duration_ns % STEP_NS:
             raise ValueError(f"duration_ns is {duration_ns}, expected a multiple of {STEP_NS}")
         while self._begun_ns is not None and self._pending and self._due_ns(self._begun_ns) <= self.time_ns:
             self.body.place(self._pending.pop(0).place)
         self.time_ns += duration_ns
-        return self.body.advance(duration_ns)
+        readings: Any = self.body.advance(duration_ns)
+        if not isinstance(readings, list | tuple) or not all(isinstance(each, Reading) for each in readings):
+            raise UsageError(
+                f"advance of the body of {self.body.robot} returned {shown(readings)}, expected {EXPECTED}"
+            )
+        return list(readings)
 
     def _due_ns(self, begun_ns: int) -> int:
         return begun_ns + round(self._pending[0].at_s * 1e9)

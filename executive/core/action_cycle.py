@@ -36,7 +36,7 @@ def act(context: Context, state: State) -> tuple[State, ActionFinished | None]:
     if running is None:
         coast = state.coasted < context.settings.coast_ticks
         return replace(state, command=state.command if coast else zero, coasted=state.coasted + 1), None
-    running, control, failure = control_step(running, state.now_ns, state.belief)
+    running, control, failure = control_step(running, state.now_ns, state.belief, context.domain.name)
     command, rejection = whole_command(context.domain, running.action, control.command, state.command)
     state = replace(state, command=command, task=replace(state.task, running=running))
     cause = rejection or failure

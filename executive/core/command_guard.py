@@ -1,4 +1,4 @@
-"""Clamps commands to the axis limits and rejects non-finite values.
+"""Clamps commands to the axis limits and rejects non-finite values, and what is no result of a controller at all.
 
 The driver's guard checks again; for independence the two share no code.
 """
@@ -6,11 +6,18 @@ The driver's guard checks again; for independence the two share no code.
 from __future__ import annotations
 
 import math
+from numbers import Real
+from typing import Any, get_args
 
-from tailor.executive.interfaces.action import Action
+import numpy as np
+
+from tailor.executive.interfaces.action import Action, Control, Outcome
 from tailor.executive.interfaces.domain import Axis, Domain
 from tailor.executive.interfaces.outlet import Command, at_rest, completed, driven_axes
 from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.schemas.parsed_files import shown
+
+OUTCOMES = get_args(Outcome)
 
 
 def whole_command(domain: Domain, action: Action, command: Command, last: Command) -> tuple[Command, Cause | None]:
@@ -34,3 +41,23 @@ def checked(command: tuple[float, ...], axes: tuple[Axis, ...]) -> tuple[tuple[f
         if not math.isfinite(value):
             return zero, Cause(Reason.COMMAND_INVALID, f"{axis.name} is {value}")
     return tuple(min(a.upper, max(a.lower, c)) for c, a in zip(command, axes, strict=True)), None
+
+
+def fault_of_control(control: Any) -> str:
+    """What of a controller's result is of another type than declared, and what is expected; empty if nothing is.
+
+    Unchecked, an outcome that is none ends the action as done, and any other mistake shows up in code of ours.
+    """
+    if not isinstance(control, Control):
+        return f"{shown(control)}, expected a Control (executive/interfaces/action.py)"
+    if not isinstance(control.outcome, str) or control.outcome not in OUTCOMES:
+        return f"the outcome {shown(control.outcome)}, expected one of: {', '.join(OUTCOMES)}"
+    if not _is_row_of_numbers(control.command):
+        return f"the command {shown(control.command)}, expected a tuple of numbers"
+    return "" if isinstance(control.detail, str) else f"the detail {shown(control.detail)}, expected text"
+
+
+def _is_row_of_numbers(value: Any) -> bool:
+    if not isinstance(value, tuple | list | np.ndarray) or (isinstance(value, np.ndarray) and value.ndim != 1):
+        return False
+    return all(isinstance(each, Real) for each in value)

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from tailor.executive.core.command_guard import fault_of_control
 from tailor.executive.deliberation.deliberation import Decision
 from tailor.executive.interfaces.action import Action, Control
 from tailor.executive.interfaces.models import DurationModel, Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Array, Belief
+from tailor.schemas.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +59,25 @@ class Running:
         )
 
 
-def control_step(running: Running, now_ns: int, belief: Belief) -> tuple[Running, Control, Cause | None]:
+def control_step(running: Running, now_ns: int, belief: Belief, package: str) -> tuple[Running, Control, Cause | None]:
     """One step of the action's controller; an action beyond its time limit has failed.
+
+    Args:
+      running: The action.
+      now_ns: Monotonic time of this tick.
+      belief: The domain's belief state.
+      package: Whose controller it is, for people: the domain's name.
 
     Returns:
       The running action with its next controller state, the control, and the cause of a failure.
+
+    Raises:
+      UsageError: The controller returned no well-formed Control; no retry would correct that.
     """
     control = running.action.controller(running.controller_state, now_ns, belief, controller_arguments(running))
+    fault = fault_of_control(control)
+    if fault:
+        raise UsageError(f"the package of {package}: the controller of {running.action.name} returned {fault}")
     cause = Cause(Reason.CONTROLLER_FAILED, control.detail) if control.outcome == "failed" else None
     if control.outcome == "running" and running.elapsed_s(now_ns) > running.time_limit_s():
         control = replace(control, outcome="failed")

@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 from tailor.executive.shell import Shell
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import TickReport, VelocityCommand
 from tests.support.toy_domain import SLIDE, driver, line_context, odometry
 
@@ -50,17 +51,21 @@ class Publisher:
         self.publish = published.append
 
 
-def test_a_robot_whose_code_raises_in_a_tick_brakes_at_once():
+@pytest.mark.parametrize(
+    ("breaking", "raised"),
+    [(lambda: {}["wheel"], (KeyError, "wheel")), (lambda: None, (UsageError, "slide returned None"))],
+)
+def test_a_robot_whose_code_raises_or_returns_nothing_in_a_tick_brakes_at_once(breaking, raised):
     context, calls = line_context(), []
 
     def breaks(state, now_ns, belief, arguments):
         calls.append(now_ns)
-        return SLIDE.controller(state, now_ns, belief, arguments) if len(calls) < 4 else {}["wheel"]
+        return SLIDE.controller(state, now_ns, belief, arguments) if len(calls) < 4 else breaking()
 
     context.domain.actions = {"slide": dataclasses.replace(SLIDE, controller=breaks)}
     session = Session()
     shell = Shell(context, session, Clock(), {})
-    with pytest.raises(KeyError, match="wheel"):
+    with pytest.raises(raised[0], match=raised[1]):
         shell.run(context.problem.goal_text, lambda state: False)
     commands = [message.v for message in session.published if isinstance(message, VelocityCommand)]
     assert commands[-2] > 0.1

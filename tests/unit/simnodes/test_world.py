@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tailor.schemas.errors import UsageError
+from tailor.simnodes.body import STEP_NS
 from tailor.simnodes.world import Event, World
 from tests.support.stand_ins.body import FakeBody
 
@@ -62,3 +64,19 @@ def test_another_start_has_its_own_events_and_none_of_the_world():
     assert ball_after(50) == 8.0
     world.reset()
     assert ball_after(50) == 9.0
+
+
+@pytest.mark.parametrize(
+    ("readings", "returned"), [(None, "None"), ("odom", "'odom'"), ([None], r"\[None\]"), ((3, 4), r"\(3, 4\)")]
+)
+def test_a_body_that_returns_no_readings_is_named(readings, returned):
+    body = FakeBody()
+    body.advance = lambda duration_ns: readings
+    with pytest.raises(UsageError, match=rf"^advance of the body of .* returned {returned}, expected a list of Read"):
+        World(body, {}, 3).advance(STEP_NS)
+
+
+def test_a_body_may_have_no_readings():
+    body = FakeBody()
+    body.advance = lambda duration_ns: ()
+    assert World(body, {}, 3).advance(STEP_NS) == []
