@@ -35,6 +35,7 @@ class ProcessSpec:
     `silence_ns`: kill the process after this long without a report of its loop, or if it is not ready in time; None: no
     limit. This is the only way to detect a hung loop whose bus threads still run.
     `arguments`: further arguments of the n-th start, from 1 on, such as a leave to arm that a restart must not have.
+    `restart_note`: what people have to know of each restart, to be read after "starting again in 0.2 s".
     """
 
     name: str
@@ -42,6 +43,7 @@ class ProcessSpec:
     restarts: bool = True
     silence_ns: int | None = None
     arguments: Callable[[int], Sequence[str]] = _no_arguments
+    restart_note: str = ""
 
     def command_line(self, start: int) -> list[str]:
         """Program and arguments of the n-th start."""

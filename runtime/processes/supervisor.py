@@ -35,6 +35,10 @@ class Supervisor:
         """State of a process."""
         return self._processes[name].state
 
+    def starts(self, name: str) -> int:
+        """How often a process was started."""
+        return self._processes[name].starts
+
     def status(self, name: str) -> str:
         """What a process reported last of its own state, for people."""
         return self._processes[name].status
@@ -89,7 +93,8 @@ class Supervisor:
         else:
             delay_ns = process.restart.delay_ns(now_ns)
             process.start_at_ns = now_ns + delay_ns
-            self._report(f"{process.spec.name} {why}; starting again in {delay_ns / 1e9:.1f} s")
+            note = process.spec.restart_note
+            self._report(f"{process.spec.name} {why}; starting again in {delay_ns / 1e9:.1f} s{note}")
 
     def _start_when_due(self, process: Supervised, now_ns: int) -> None:
         if process.start_at_ns is None or now_ns < process.start_at_ns:

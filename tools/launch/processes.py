@@ -9,6 +9,7 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
+from tailor.schemas.installed import spec_of
 from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch.senders import Senders
 
@@ -70,7 +71,10 @@ def hardware_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
 
 
 def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
-    """The executive."""
+    """The executive. Only its first start has the goal of the scenario: a restart is no resume.
+
+    What people have asked for since is lost with the process: to drop the goal, another one, or what was done of it.
+    """
     executive = config.executive
     flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.bus.endpoint]
     flags += ["--horizon", str(executive.settings.refinement.horizon)]
@@ -78,9 +82,15 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     flags += ["--planner", "" if external.engine == "auto" and external.after_plans else external.command]
     flags += ["--config", config.deployment_file] if config.deployment_file else []
     flags += ["--zoo", executive.zoo] if executive.zoo else []
+
+    def arguments(start: int) -> tuple[str, ...]:
+        wait = ("--wait",) if start > 1 else ()
+        return (*wait, "--driver-sender", senders.of(config.driver), *senders.arguments("executive", start))
+
     return ProcessSpec(
         "executive",
         tailor("executive", executive.domain, *flags),
         silence_ns=EXECUTIVE_SILENCE_NS,
-        arguments=lambda start: ("--driver-sender", senders.of(config.driver), *senders.arguments("executive", start)),
+        arguments=arguments,
+        restart_note=f", without a goal; next: tailor arm {spec_of(executive.domain).robot}, then tailor goal",
     )

@@ -121,10 +121,14 @@ class _System:
             period = loop.wait_for_next_period()
             self._receive()
             self._poll(period.now_ns)
-            ended = self._ended() or (self._config.once and (self._result or self._stopped))
+            ended = self._ended() or (self._config.once and (self._result or self._stopped or self._restarted()))
             if ended:
                 return ended
         return self._result
+
+    def _restarted(self) -> str:
+        """Failure if the executive was started again, or "": nobody sets it a goal, and nothing moves any more."""
+        return "failed: the executive was started again" if self._supervisor.starts("executive") > 1 else ""
 
     def _receive(self) -> None:
         """Take in what the own children publish; messages of strangers do not count."""

@@ -1,7 +1,10 @@
-"""`tailor goal --cancel` drops the open goal of a system that `tailor up` started: moving, stopped, or done."""
+"""A dropped goal of a system that `tailor up` started is not pursued: moving, stopped, done, or by a new executive."""
 
 import json
+import os
+import signal
 import subprocess
+from contextlib import contextmanager
 from functools import partial
 
 import pytest
@@ -10,7 +13,7 @@ from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.messages.soccer import SoccerGroundTruth
-from tests.support.bus_system import answers, free_endpoint
+from tests.support.bus_system import answers, child_pid, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 from tests.support.watched_robot import QUIET_S, WatchedRobot
 
@@ -18,9 +21,9 @@ from tests.support.watched_robot import QUIET_S, WatchedRobot
 class System(WatchedRobot):
     """A launched robot as people at a shell see it."""
 
-    def __init__(self, endpoint, session):
+    def __init__(self, endpoint, session, up):
         super().__init__(session)
-        self.endpoint = endpoint
+        self.endpoint, self.up = endpoint, up
 
     def moves(self):
         truth = self.poll().get(SoccerGroundTruth)
@@ -41,34 +44,61 @@ class System(WatchedRobot):
         assert self.fastest_in(QUIET_S) < 0.02
         assert self.mode() == "armed"
 
+    def restart_executive(self):
+        sender = self.poll()[ExecStatus].sender
+        os.kill(child_pid(self.up.pid, "executive"), signal.SIGKILL)
+        wait_until(lambda: self.poll()[ExecStatus].sender != sender, "another executive")
 
-@pytest.mark.promise("P41")
-@pytest.mark.xdist_group("live")
-def test_a_cancelled_goal_brakes_the_robot_and_is_not_pursued_when_people_arm_it_after_an_estop():
+
+@contextmanager
+def launched():
     endpoint = free_endpoint()
     up = Child("up", tailor("up", "soccer", "--scenario", "waypoints", "--connect", endpoint), subprocess.DEVNULL)
     try:
         wait_until(partial(answers, endpoint), "router")
         with open_client(endpoint) as session:
-            system = System(endpoint, session)
+            system = System(endpoint, session, up)
             wait_until(system.moves, "robot moves")
-            goal = system.latest[ExecStatus].goal
-            assert system.tell("goal", "--cancel") == f"cancelled: {goal}"
-            system.stays()
-            status = system.latest[ExecStatus]
-            assert (status.mode, status.goal, status.result) == ("READY", goal, "cancelled")
-            assert json.loads(system.tell("goal", "--cancel", "--json")) == {
-                "accepted": True,
-                "answer": "no goal is open",
-            }
-            system.tell("goal")
-            wait_until(system.moves, "robot moves: another goal was set")
-            system.tell("estop")
-            assert system.mode() == "estopped"
-            assert system.tell("goal", "--cancel") == f"cancelled: {goal}"
-            system.tell("arm", "agilo", "--reset")
-            system.stays()
-            system.tell("goal")
-            wait_until(system.moves, "robot moves: another goal was set")
+            yield system
     finally:
         up.stop()
+
+
+@pytest.mark.promise("P41")
+@pytest.mark.xdist_group("live")
+def test_a_cancelled_goal_brakes_the_robot_and_is_not_pursued_when_people_arm_it_after_an_estop():
+    with launched() as system:
+        goal = system.latest[ExecStatus].goal
+        assert system.tell("goal", "--cancel") == f"cancelled: {goal}"
+        system.stays()
+        status = system.latest[ExecStatus]
+        assert (status.mode, status.goal, status.result) == ("READY", goal, "cancelled")
+        assert json.loads(system.tell("goal", "--cancel", "--json")) == {"accepted": True, "answer": "no goal is open"}
+        system.tell("goal")
+        wait_until(system.moves, "robot moves: another goal was set")
+        system.tell("estop")
+        assert system.mode() == "estopped"
+        assert system.tell("goal", "--cancel") == f"cancelled: {goal}"
+        system.tell("arm", "agilo", "--reset")
+        system.stays()
+        system.tell("goal")
+        wait_until(system.moves, "robot moves: another goal was set")
+
+
+@pytest.mark.promise("P41")
+@pytest.mark.xdist_group("live")
+@pytest.mark.parametrize(
+    "told", [("goal", "--cancel"), ("goal", "(visited way3)"), ()], ids=["dropped", "other", "own"]
+)
+def test_an_executive_that_is_started_again_has_no_goal(told):
+    with launched() as system:
+        if told:
+            system.tell(*told)
+        system.restart_executive()
+        wait_until(system.at_rest, "robot at rest")
+        system.tell("arm", "agilo")
+        system.stays()
+        status = system.latest[ExecStatus]
+        assert (status.mode, status.goal, status.result) == ("READY", "", "")
+        system.tell("goal")
+        wait_until(system.moves, "robot moves: a goal was set")

@@ -94,6 +94,16 @@ def test_a_dead_child_is_started_again_after_its_back_off(supervisor):
     assert supervisor.state("executive") is State.STARTING
 
 
+def test_people_are_told_what_a_restart_lacks(supervisor):
+    supervisor.start(ProcessSpec("executive", ["x"], restart_note=", without a goal"), 0)
+    assert supervisor.starts("executive") == 1
+    FakeChild.made[0].code = -9
+    supervisor.poll(1 * S)
+    supervisor.poll(2 * S)
+    assert supervisor.reported == ["executive ended with -9; starting again in 0.2 s, without a goal"]
+    assert supervisor.starts("executive") == 2
+
+
 @pytest.mark.promise("P2")
 def test_a_crash_loop_is_given_up(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"]), 0)

@@ -45,10 +45,12 @@ class SoccerTasks:
         """Draw a scenario."""
         self.scenario = draw.choice(REPEATABLE)
         self._system, self._draw = system, draw
+        self._begun = False
 
     def begin(self, now_ns: int) -> int:
-        """The scenario's goal is good."""
-        return 0
+        """The first executive has the scenario's goal, a restarted one has none."""
+        begun, self._begun = self._begun, True
+        return now_ns if begun else 0
 
     def prepare(self, now_ns: int) -> int:
         """Another start of the same scenario; that disarms the robot."""

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from tailor.executive.composition import ExecutiveConfig
 from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
@@ -59,6 +61,14 @@ def test_only_the_first_start_of_a_driver_knows_who_has_leave():
     executive = executive_process(config(), senders)
     assert executive.command_line(1)[-2:] == ["--sender", senders.leave]
     assert senders.leave not in executive.command_line(2)
+
+
+@pytest.mark.promise("P41")
+def test_only_the_first_start_of_an_executive_has_a_goal():
+    executive = executive_process(config(), Senders())
+    assert "--wait" not in executive.command_line(1)
+    assert all("--wait" in executive.command_line(start) for start in (2, 3))
+    assert executive.restart_note == ", without a goal; next: tailor arm agilo, then tailor goal"
 
 
 def test_hardware_takes_the_simulators_place_and_gets_no_leave():
