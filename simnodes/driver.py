@@ -18,7 +18,9 @@ from tailor.simnodes.reasons import ArmRefusal, Mode, Reason
 
 STATE_PERIOD_NS = 100_000_000  # driver state: 10 Hz and on change
 SELF_ARM = "self_arm"  # requests of the executive; those of people come on another topic, which it may not write
-TOPICS = ("arm_request", SELF_ARM, "estop")  # inputs of every driver besides its command
+# Inputs of every driver besides its command, to be looked at in this order. Were the e-stop the last, a reset and then
+# an e-stop that arrive in the midst of a look would be taken the other way round: the reset would release the e-stop.
+TOPICS = ("estop", "arm_request", SELF_ARM)
 SHOWN_DIGITS = 8  # of a sender id
 HELD_BY = "held by "  # in the detail of a driver's state: the dead man's switches that it hears
 NOT_READY = "not ready"  # in the detail, with the reason why the hardware cannot be driven, unless it stands before

@@ -55,7 +55,7 @@ class Node:
         self.driver = Driver(spec, epoch, leave)
         self._world, self._clock = world, clock
         self._loop = Loop(round(PERIOD_NS / speed), clock)
-        self._inbox = session.inbox((*spec.command_topics, *TOPICS), robot)
+        self._inbox = session.inbox((*TOPICS, *spec.command_topics), robot)
         self._session = session
         self._publishers = {"driver": session.publisher("driver", robot)}
         servers = {name: session.service_server(f"{robot}/sim/{name}") for name in NAMES}

@@ -60,7 +60,7 @@ class HardwareNode:
         self.driver = Driver(spec, epoch, leave)
         self.device = Device(hardware, spec.limits, retry, clock)
         self._clock, self._loop, self._report = clock, Loop(PERIOD_NS, clock), report
-        self._inbox = session.inbox((*spec.command_topics, *TOPICS), hardware.robot)
+        self._inbox = session.inbox((*TOPICS, *spec.command_topics), hardware.robot)
         names = [sensor.topic for sensor in spec.sensors]
         self._publishers = {name: session.publisher(name, hardware.robot) for name in ("driver", *names)}
         self._watch = SensorWatch(watched_sensors(names))

@@ -3,7 +3,14 @@
 import itertools
 from collections import Counter
 
+import pytest
+
+from tailor.runtime.bus.attachment import Origin, pack
+from tailor.runtime.bus.encoding import encoding_of
+from tailor.runtime.bus.inbox import Inbox, Raw
+from tailor.schemas.codec import encode
 from tailor.schemas.messages import ArmRequest, EStop, Sample, VelocityCommand
+from tailor.schemas.topics import TOPICS, key_of
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.node import MAX_AT_ONCE, Node
@@ -146,3 +153,46 @@ def test_a_dead_mans_switch_is_held_in_real_time_while_the_world_is_paused():
     robot.bus.servers["pause"].waiting.append(Request("true"))
     robot.periods(52)
     assert robot.node.driver.guard.mode is Mode.ESTOPPED
+
+
+class InterruptedBus(Bus):
+    """A bus whose inbox is real; a reset, then an e-stop arrive before its look number `moment` at a subscription."""
+
+    def __init__(self, moment):
+        super().__init__()
+        self.queues, self.looks, self.moment = {}, 0, moment
+
+    def inbox(self, names, robot):
+        self.queues = {name: [] for name in names}
+        rows = [(TOPICS[name], key_of(name, robot), _Look(self, name)) for name in names]
+        return Inbox(rows, now=lambda: 0, wall=lambda: 0)
+
+    def look(self, name):
+        if self.looks == self.moment:
+            self.queues["arm_request"].append(ArmRequest(True, True, EXECUTIVE, 0))
+            self.queues["estop"].append(EStop(True))
+        self.looks += 1
+        return self.queues[name].pop(0) if self.queues[name] else None
+
+
+class _Look:
+    def __init__(self, bus, name):
+        self.bus, self.name = bus, name
+
+    def receive(self):
+        message = self.bus.look(self.name)
+        if message is None:
+            return None
+        origin = pack(Origin(self.bus.looks, 1, PERSON))
+        return Raw(key_of(self.name, "agilo"), encode(message), origin, encoding_of(type(message)), True, None)
+
+
+@pytest.mark.promise("P38")
+def test_an_estop_that_follows_a_reset_wins_at_whatever_moment_of_a_period_both_arrive():
+    for moment in range(20):
+        bus = InterruptedBus(moment)
+        node = Node(World(Body(), {}, 3), SPEC, bus, Clock(), epoch=7)
+        while bus.looks <= moment:
+            node._run_period(node._loop.wait_for_next_period())
+        node._run_period(node._loop.wait_for_next_period())
+        assert node.driver.guard.mode is Mode.ESTOPPED, f"both arrived before look {moment}"
