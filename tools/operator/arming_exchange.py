@@ -92,6 +92,16 @@ class Exchange:
         self._sent_s = now_s
         return request
 
+    def withdrawal(self) -> ArmRequest | None:
+        """The request that takes back one to arm which was sent; to be published if nothing confirmed it.
+
+        A driver that stood still, or was out of reach, would else obey it whenever it goes on, and move a robot that
+        people believe to be disarmed. It takes requests in their order, so it arms nothing then.
+        """
+        if not self._request.arm or self._first_s is None or self._before is None:
+            return None
+        return ArmRequest(arm=False, reset=False, sender="", epoch=self._before.epoch)
+
     def outcome(self, now_s: float) -> Outcome | None:
         """The outcome as soon as there is one."""
         if self._confirmed():

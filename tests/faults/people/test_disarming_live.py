@@ -12,6 +12,9 @@ import pytest
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import ArmRequest, DriverState
+from tailor.simnodes.driver import Driver
+from tailor.simnodes.driver_spec import DriverSpec
+from tailor.simnodes.guard import Limit
 from tests.support.bus_system import answers, bus_system, child_pid, free_endpoint, guarded_robot, secured_system
 from tests.support.driven import Driven, burners
 from tests.support.patience import PATIENCE_S, wait_until
@@ -89,6 +92,54 @@ def test_a_forgotten_simulator_beside_the_driver_keeps_it_from_being_armed(tmp_p
         forgotten.kill()
         done = arm(endpoint, "--sender", "e" * 32)
         assert (done.returncode, done.stdout) == (0, "agilo is armed\n"), (done.stdout, done.stderr)
+
+
+class StandingDriver:
+    """A driver that goes on telling its state, but stands still before it takes any request."""
+
+    def __init__(self, session):
+        self.driver = Driver(DriverSpec("cmd_vel", ("v",), (Limit(-1.0, 1.0),)), epoch=7)
+        self.outlet, self.requests = session.publisher("driver", "agilo"), session.inbox(["arm_request"], "agilo")
+        self.waiting = []
+
+    def stand(self, seconds):
+        ends_s = time.monotonic() + seconds
+        while time.monotonic() < ends_s:
+            state = self.driver.state(time.monotonic_ns(), 1)
+            if state is not None and not self.waiting:
+                self.outlet.publish(state)
+            self.waiting += self.requests.drain()
+            time.sleep(0.01)
+
+    def modes(self):
+        """Modes of its guard while it takes what has waited."""
+        for sample in self.waiting:
+            self.driver.take([sample], {}, time.monotonic_ns())
+            yield self.driver.guard.mode
+
+
+@pytest.mark.promise("P52")
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_a_request_to_arm_that_nobody_confirmed_arms_nothing_later(interrupted):
+    with bus_system() as (session, endpoint, _):
+        standing = StandingDriver(session)
+        words = tailor("arm", "agilo", "--sender", "e" * 32, "--connect", endpoint)
+        people = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        try:
+            wait_until(lambda: standing.stand(0.2) or standing.waiting, "request")
+            if interrupted:
+                people.send_signal(signal.SIGINT)
+            wait_until(lambda: standing.stand(0.2) or people.poll() is not None, "end of the command")
+            standing.stand(0.5)
+        finally:
+            people.kill()
+            printed = people.communicate()[0]
+        modes = list(standing.modes())
+        assert (modes[0], modes[-1]) == ("armed", "disarmed"), "it is taken back, and would have armed"
+        assert people.returncode != 0
+        assert (
+            interrupted or printed == "sent, but not confirmed, so it was taken back; agilo is disarmed: just started\n"
+        )
 
 
 @pytest.mark.promise("P52")

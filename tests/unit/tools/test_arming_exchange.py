@@ -212,6 +212,14 @@ def test_after_five_seconds_the_outcome_tells_what_is_missing(request_, before, 
     assert made.outcome(6.0) is expected
 
 
+@pytest.mark.promise("P52")
+def test_only_a_request_to_arm_that_was_sent_is_taken_back_from_the_start_that_it_was_for():
+    assert exchange(ARM, state()).withdrawal() == ArmRequest(False, False, "", 7)
+    assert exchange(RESET, ESTOPPED).withdrawal() == ArmRequest(False, False, "", 7)
+    assert exchange(ARM).withdrawal() is None, "nothing was sent"
+    assert exchange(OFF, ARMED).withdrawal() is None
+
+
 def test_the_page_of_reasons_lists_every_outcome():
     page = (ROOT / "docs" / "reasons.md").read_text(encoding="utf-8")
     listed = re.findall(r"^\| `Outcome` \| `([^`]+)` \|", page, re.MULTILINE)

@@ -12,6 +12,7 @@ import json
 import re
 import time
 
+from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
@@ -27,7 +28,7 @@ TEXTS = {
     Outcome.CONFIRMED: "{state}",
     Outcome.REFUSED: "refused: {refusal}; {state}",
     Outcome.CHANGED: "changed meanwhile, so the request was not repeated; {state}",
-    Outcome.NO_CONFIRMATION: "sent, but not confirmed; {state}",
+    Outcome.NO_CONFIRMATION: "sent, but not confirmed{withdrawn}; {state}",
     Outcome.NOT_SENT: "not sent, since nobody takes requests for {robot}; {state}",
     Outcome.NO_DRIVER: "not sent; {state}",
     Outcome.SEVERAL_DRIVERS: "not sent, since several drivers of {robot} are on the bus, expected one",
@@ -62,7 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
         request = ArmRequest(not arguments.off, arguments.reset, sender, 0)
         outcome, exchange = _exchange(session, robot, request)
     state = _text(robot, exchange.state)
-    text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot)
+    withdrawn = "" if arguments.off else ", so it was taken back"
+    text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn)
     _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.state)
     return 0 if outcome is Outcome.CONFIRMED else 1
 
@@ -98,10 +100,20 @@ def _executive_sender(session: Session) -> str:
 
 
 def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcome, Exchange]:
-    """Repeat a request until its outcome is known."""
-    publisher = session.publisher("arm_request", robot)
+    """Repeat a request until its outcome is known; one to arm without any, also by Ctrl-C, is taken back."""
+    publisher, exchange = session.publisher("arm_request", robot), Exchange(request, time.monotonic())
+    outcome: Outcome | None = None
+    try:
+        outcome = _outcome(session, robot, publisher, exchange)
+    finally:
+        withdrawal = exchange.withdrawal()
+        if outcome in (None, Outcome.NO_CONFIRMATION) and withdrawal is not None:
+            publisher.publish(withdrawal)
+    return outcome, exchange
+
+
+def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Exchange) -> Outcome:
     inbox = session.inbox(["driver", "estop"], robot, newest_only=False)  # a change in between must be seen
-    exchange = Exchange(request, time.monotonic())
     while (outcome := exchange.outcome(time.monotonic())) is None:
         for sample in inbox.drain():
             if isinstance(sample.message, DriverState):
@@ -113,7 +125,7 @@ def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcom
             publisher.publish(due)
         exchange.matched = exchange.matched or publisher.matched()
         time.sleep(POLL_S)
-    return outcome, exchange
+    return outcome
 
 
 def _text(robot: str, state: DriverState | None) -> str:
