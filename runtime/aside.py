@@ -6,6 +6,7 @@ import contextlib
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from tailor.runtime.realtime import take_ordinary
 
@@ -34,6 +35,10 @@ class Aside:
         self._waiting.append(function)
         self._changed.set()
 
+    def output(self, function: Callable[[], object]) -> None:
+        """Have output made that may be lost: where a disk is full, or nobody reads it any more, the loop goes on."""
+        self.call(partial(_output, function))
+
     def finish(self) -> None:
         """Wait until all calls are made, but no longer than FINISH_S."""
         self._ended = True
@@ -50,6 +55,11 @@ class Aside:
                     self._waiting.popleft()()
         except Exception as error:
             self._error = error
+
+
+def _output(function: Callable[[], object]) -> None:
+    with contextlib.suppress(OSError):
+        function()
 
 
 @contextlib.contextmanager

@@ -123,16 +123,16 @@ def processes_text(states: ProcessStates) -> str:
 
 
 class _Beside:
-    """Another screen, for which nobody waits: a terminal may stand still (Ctrl-S), while children are watched."""
+    """Another screen, for which nobody waits: a terminal may stand still (Ctrl-S), or the disk of a log be full."""
 
     def __init__(self, shown: Screen, terminal: Aside) -> None:
         self._shown, self._terminal = shown, terminal
 
     def report(self, line: str) -> None:
-        self._terminal.call(partial(self._shown.report, line))
+        self._terminal.output(partial(self._shown.report, line))
 
     def show(self, message: Message) -> None:
-        self._terminal.call(partial(self._shown.show, message))
+        self._terminal.output(partial(self._shown.show, message))
 
 
 @contextmanager

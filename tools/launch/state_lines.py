@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from tailor.runtime.aside import FINISH_S
 from tailor.runtime.realtime import take_ordinary
 from tailor.schemas.reason_text import without_numbers
-from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.plain_text import note, plain
 
 PERIOD_S = 0.2
 
@@ -42,7 +42,6 @@ def _print(text: Callable[[], str], ended: threading.Event) -> None:
         line = text()
         if line and without_numbers(line) != last:
             last = without_numbers(line)
-            with contextlib.suppress(OSError):  # nobody reads any more, or a disk is full: the loop beside goes on
-                print(plain(line), flush=True)
+            note(plain(line))
         if over:
             return

@@ -1,21 +1,26 @@
-"""A terminal that stands still, as after Ctrl-S, keeps nobody from stopping a robot, and no launcher from its work."""
+"""A terminal that stands still, as after Ctrl-S, keeps nobody from stopping a robot, and no launcher from its work.
+
+Nor does a log on a full disk.
+"""
 
 import fcntl
 import os
 import pty
 import select
+import signal
 import struct
 import subprocess
 import termios
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import pytest
 
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import tailor
 from tailor.schemas.messages import DriverState
-from tests.support.bus_system import bus_system, free_endpoint
+from tests.support.bus_system import accepts, answers, bus_system, child_pid, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 
 PLAIN_ROBOT = 'robot = "agilo"\n[bus]\nconnect = "tcp/127.0.0.1:1"\n[topics]\npose = ""\n[pose]\nstart = [0, 0, 0]\n'
@@ -86,3 +91,41 @@ def test_a_launcher_whose_terminal_stands_still_watches_its_children():
             time.sleep(1.5)  # until it has drawn
             states.drain(0)
             wait_until(lambda: states.drain(0), "states of the processes", timeout_s=5.0)
+
+
+@pytest.mark.promise("P9")
+def test_a_robot_drives_on_while_the_disk_of_its_launchers_log_is_full():
+    """The launcher ended at its second line, and the robot stopped on its way."""
+    endpoint = free_endpoint()
+    words = tailor("up", "soccer", "--scenario", "approach", "--no-scene", "--connect", endpoint)
+    with Path("/dev/full").open("w") as log:
+        up = subprocess.Popen(words, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+    try:
+        wait_until(lambda: answers(endpoint), "router")
+        with open_client(endpoint) as session:
+            statuses = session.inbox(["status"], "")
+            wait_until(lambda: any(s.message.result == "achieved" for s in statuses.drain()), "the goal")
+            assert up.poll() is None
+    finally:
+        up.terminate()
+        up.wait(PATIENCE_S)
+
+
+@pytest.mark.promise("P9")
+def test_a_bus_goes_on_while_the_disk_of_its_log_is_full():
+    endpoint = free_endpoint()
+    with Path("/dev/full").open("w") as log:
+        bus = subprocess.Popen(tailor("bus", "--connect", endpoint), stdout=log, stderr=log)
+    try:
+        wait_until(lambda: accepts(endpoint), "gateway")
+        first = child_pid(bus.pid, "gateway")
+        os.kill(first, signal.SIGKILL)
+
+        def next_one():
+            with suppress(LookupError):
+                return child_pid(bus.pid, "gateway") != first and accepts(endpoint)
+
+        wait_until(next_one, "the next gateway, of which the log holds no line")
+    finally:
+        bus.terminate()
+        bus.wait(PATIENCE_S)

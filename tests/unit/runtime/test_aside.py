@@ -1,5 +1,7 @@
 """Calls beside a loop: it waits for none of them, and learns of those that failed."""
 
+import errno
+import os
 import threading
 import time
 
@@ -46,3 +48,17 @@ def test_what_a_call_raises_is_raised_to_the_next_caller():
         calls.call(closed)
         wait_until(lambda: calls._error)
         assert fails()
+
+
+def test_output_that_cannot_be_made_is_lost_and_the_next_one_is_made():
+    made = []
+
+    def full():
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with aside() as calls:
+        for function in (full, lambda: made.append(1), full, lambda: made.append(2)):
+            calls.output(function)
+            wait_until(lambda: not calls._waiting)
+    assert made == [1, 2]
+    assert calls._error is None

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import secrets
-import sys
 from collections.abc import Callable
 from functools import partial
 
@@ -22,7 +21,7 @@ from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import driver_spec_to_run
 from tailor.simnodes.hardware.node import HardwareNode
 from tailor.simnodes.hardware.watchdogs import RetryPolicy
-from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.plain_text import note, plain
 from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.endpoint import (
     bus_settings,
@@ -76,4 +75,4 @@ def run(arguments: argparse.Namespace) -> int:
 
 def reporter(robot: str, terminal: Aside) -> Callable[[str], None]:
     """Prints lines about a robot, with text from its device, beside the guard's loop: it never waits for a terminal."""
-    return lambda line: terminal.call(partial(print, plain(f"{robot}: {line}"), file=sys.stderr, flush=True))
+    return lambda line: terminal.call(partial(note, plain(f"{robot}: {line}"), to_stderr=True))

@@ -14,6 +14,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.processes.supervised import State
 from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.tools.cli.plain_text import note
 from tailor.tools.cli.systems.bus_settings import BusSettings, configure_hosting, with_hosting_flags
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
 from tailor.tools.launch.hosting import gateways, hosted_bus
@@ -33,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     settings = with_hosting_flags(bus_settings(arguments), arguments)
     stop = stop_on_signals()
     set_for_host()
-    with hosted_bus(settings, _report), tempfile.TemporaryDirectory(prefix="tailor-") as folder:
-        supervisor = Supervisor(_report, lambda name, argv: Child(name, argv, notify_folder=Path(folder)))
+    with hosted_bus(settings, note), tempfile.TemporaryDirectory(prefix="tailor-") as folder:
+        supervisor = Supervisor(note, lambda name, argv: Child(name, argv, notify_folder=Path(folder)))
         try:
             for spec in gateways(settings):
                 supervisor.start(spec, time.monotonic_ns())
@@ -53,16 +54,12 @@ def _route(supervisor: Supervisor, settings: BusSettings, notifier: Notifier, st
         if State.ENDED in states:
             return 1
         if failure := folder.failure():
-            _report(failure)
+            note(failure)
             return 1
         if not ready and State.STARTING not in states:
             ready = True
-            _report(f"routing at {settings.endpoint}; Ctrl-C ends it")
+            note(f"routing at {settings.endpoint}; Ctrl-C ends it")
             notifier.ready()
         notifier.alive()
         time.sleep(PERIOD_S)
     return 0
-
-
-def _report(line: str) -> None:
-    print(line, flush=True)

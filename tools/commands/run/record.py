@@ -33,7 +33,7 @@ from tailor.runtime.recordings.snapshot_recorder import SnapshotRecorder
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import check_within
-from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.plain_text import note, plain
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.recordings.recorder_bus import RecorderBus
 
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     with bus.opened():
         recorder = _recorder(arguments, bus.queue, wanted, waits_for_room=notifier.supervised)
         if not (arguments.quiet or notifier.supervised):
-            print(_beginning(arguments), file=sys.stderr, flush=True)
+            note(_beginning(arguments), to_stderr=True)
         notifier.ready()
         _record(recorder, bus, stop, notifier, quiet=arguments.quiet)
         notifier.stopping()
@@ -159,7 +159,7 @@ def _record(
             bus.renew(time.monotonic_ns())
             if bus.connected != connected:
                 connected = not connected
-                print(RECONNECTED if connected else DISCONNECTED, file=sys.stderr, flush=True)
+                note(RECONNECTED if connected else DISCONNECTED, to_stderr=True)
             notifier.alive()
             if (losses := _losses(recorder.health, connected)) != status:
                 status = losses

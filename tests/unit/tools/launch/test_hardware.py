@@ -1,11 +1,17 @@
 """Hardware as people name it: a file of plain topics drives robots that obey cmd_vel alone."""
 
+import errno
+import io
+import os
+import time
+
 import pytest
 
 from tailor.runtime.aside import aside
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.drivers.driver import reporter
 from tailor.tools.launch.hardware import hardware_of
+from tests.support.patience import wait_until
 
 ELSEWHERE = '[bus]\nconnect = "tcp/192.0.2.1:7447"\n'
 REFUSED = {
@@ -48,3 +54,19 @@ def test_what_a_device_says_reaches_a_terminal_without_its_control_characters(ca
     with aside() as terminal:
         reporter("agilo", terminal)("not ready: read: OSError: unexpected \x1b[2J")
     assert capsys.readouterr().err == "agilo: not ready: read: OSError: unexpected \\x1b[2J\n"
+
+
+class FullDisk(io.StringIO):
+    def flush(self):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_driver_whose_log_is_on_a_full_disk_goes_on(monkeypatch):
+    monkeypatch.setattr("sys.stderr", FullDisk())
+    with aside() as terminal:
+        report = reporter("agilo", terminal)
+        for _ in range(3):
+            report("ready")
+            wait_until(lambda: not terminal._waiting)
+            time.sleep(0.01)  # until the last one is made
+    assert terminal._error is None
