@@ -65,7 +65,7 @@ class HardwareNode:
         self._publishers = {name: session.publisher(name, hardware.robot) for name in ("driver", *names)}
         self._watch = SensorWatch(watched_sensors(names))
         self._opened = False  # the watch has been restarted since the hardware runs
-        self._unready = ""
+        self._unready: str | None = None  # nothing is reported yet
         self.driver.unready = Phase.OPENING.value
 
     def run(self, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> bool:

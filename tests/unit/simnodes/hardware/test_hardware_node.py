@@ -4,6 +4,7 @@ import asyncio
 import itertools
 import math
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -31,11 +32,11 @@ SPEC = DriverSpec(
 class Robot:
     """A node in a thread of its own."""
 
-    def __init__(self, hardware, attempts=0):
+    def __init__(self, hardware, attempts=0, spec=SPEC):
         self.hardware, self.bus, self.numbers = hardware, Bus(), itertools.count(1)
         retry = RetryPolicy(first_s=0.05, most_s=0.05, attempts=attempts)
         self.clock, self.reports = MonotonicClock(), []
-        self.node = HardwareNode(hardware, SPEC, self.bus, self.clock, epoch=7, retry=retry, report=self.reports.append)
+        self.node = HardwareNode(hardware, spec, self.bus, self.clock, epoch=7, retry=retry, report=self.reports.append)
         self.ended, self.outcome = threading.Event(), []
         self.thread = threading.Thread(target=lambda: self.outcome.append(self.node.run(self.ended.is_set)))
         self.thread.start()
@@ -83,6 +84,14 @@ def stopped_for(robot, reason):
     state = wait_until(lambda: robot.is_in("stopped")() and robot.state(), "stop", 5)
     assert (state.reason, reason in state.detail) == ("driver fault", True), state.detail
     wait_until(lambda: robot.hardware.written[-1:] in ([], [(0.0, 0.0)]), "rest", 5)
+
+
+def test_hardware_that_opens_at_once_and_has_no_watched_sensor_can_be_armed(robot):
+    hardware = Faulty()
+    hardware.odometry = {"pose": PoseEstimate(0, 0.0, 0.0, 0.0, 0.01, 0.01, 0.01)}
+    driven = robot(hardware, spec=replace(SPEC, sensors=(SensorSpec("pose", 12.5),)))
+    driven.drive()
+    assert driven.reports == ["ready"]
 
 
 def test_commands_reach_the_hardware_and_measurements_the_bus(robot):
