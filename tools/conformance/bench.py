@@ -152,15 +152,25 @@ class Bench:
             if limit.kept is None and self.measured(axis.name) is not None:
                 yield index, self.fraction * min(abs(limit.lower), abs(limit.upper))
 
+    def tested_axes(self) -> list[tuple[int, float]]:
+        """All of `tests`.
+
+        Raises:
+          NotPossible: There is none.
+        """
+        if found := list(self.tests()):
+            return found
+        names = ", ".join(axis.name for axis in self.domain.axes if axis.kept is None)
+        raise NotPossible(f"no sensor shows the speed of an axis, expected a field or a joint named as one: {names}")
+
     def moving(self) -> tuple[float, ...]:
         """A command that moves the first axis that sensors show.
 
         Raises:
           NotPossible: There is none.
         """
-        for index, speed in self.tests():
-            return tuple(speed if each == index else value for each, value in enumerate(self.rest))
-        raise NotPossible("no sensor shows the speed of an axis")
+        index, speed = self.tested_axes()[0]
+        return tuple(speed if each == index else value for each, value in enumerate(self.rest))
 
     def measured(self, axis: str, window_s: float = 0.2) -> float | None:
         """Mean speed of an axis over the last moments; None if no sensor shows it."""

@@ -19,9 +19,7 @@ HOLD_S = 0.5  # silence that releases a dead man's switch
 def moves_as_commanded(bench: Bench) -> Iterator[str]:
     """Each axis moves in the commanded direction at the commanded speed: forward, and left as seen from above."""
     bench.wait(SETTLE_S)
-    axes = list(bench.tests())
-    if not axes:
-        raise NotPossible("no sensor shows the speed of an axis")
+    axes = bench.tested_axes()
     bench.arm()
     for index, speed in axes:
         for sign in (1.0, -1.0):

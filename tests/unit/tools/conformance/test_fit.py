@@ -46,6 +46,13 @@ class Ramped(FakeBody):
         self.rng = rng
 
 
+class Unseen(FakeBody):
+    """Shows its pose alone."""
+
+    def advance(self, duration_ns):
+        return [reading for reading in super().advance(duration_ns) if reading.topic == "pose"]
+
+
 def responses_of(seed=0, **robot):
     link = SimulatedLink(World(Ramped(**robot), {}, seed), SPEC)
     return responses(Bench(link, DOMAIN, SPEC, fraction=0.2), 0.3)
@@ -74,6 +81,17 @@ def test_a_step_response_has_the_robots_figures():
     assert v.dead_s == pytest.approx(0.2, abs=0.04)
     assert v.slope == pytest.approx(0.5, rel=0.15)
     assert v.speed == pytest.approx(0.27, abs=0.01)
+
+
+@pytest.mark.parametrize(("period_s", "found"), [(0.02, 1), (0.05, 0)])
+def test_rises_that_two_measurements_cannot_tell_apart_are_equal(period_s, found):
+    real, models = (Response("v", "m/s", 0.27, 0.1, slope, 0.27, period_s) for slope in (1.2, 2.0))
+    assert len(list(differences([real], [models]))) == found
+
+
+def test_the_period_of_a_response_is_that_of_its_sensors():
+    mixed_s = 1 / 60  # 50 Hz of odometry and 10 of the truth
+    assert [each.period_s for each in responses_of()] == pytest.approx([mixed_s, mixed_s], rel=0.1)
 
 
 def test_a_robot_that_does_not_move_is_no_misfit_but_not_possible():
@@ -105,6 +123,12 @@ def test_a_driver_that_has_ended_is_no_misfit_but_not_possible():
     bench.wait(2.0)
     with pytest.raises(NotPossible, match="it publishes no state"):
         responses(bench, 0.3)
+
+
+def test_a_speed_that_no_sensor_shows_is_named():
+    link = SimulatedLink(World(Unseen(), {}, 0), SPEC)
+    with pytest.raises(NotPossible, match="expected a field or a joint named as one: v, omega"):
+        responses(Bench(link, DOMAIN, SPEC, fraction=0.2), 0.3)
 
 
 def test_a_misfit_comes_with_the_command_that_gathers_anew():
