@@ -17,7 +17,7 @@ STEP_S = 3.0  # longest step; a step ends as soon as the axis has settled, since
 WINDOW_S, SETTLED = 0.3, 0.03  # change of the mean speed from window to window, as a fraction of the step
 SMOOTHED = 5  # samples
 DEAD_S, SLOPE, SPEED = 0.08, 0.3, 0.1  # differences that matter: seconds, and fractions
-RISE_S, PERIODS = 0.05, 2  # of the whole rise: less is as good as at once, or is not seen by a slow sensor
+RISE_S = 0.05  # of the whole rise: less is as good as at once; half of what is smoothed over, if that is longer
 LOW, HIGH = 0.25, 0.75  # of the step; between them a response is steepest, and noise matters least
 MAX_GAP_S = 0.04  # beyond the usual time between two measurements: half of the dead time that matters
 TRIES = 5  # of a step with such a gap
@@ -117,7 +117,7 @@ def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterato
         if abs(each.dead_s - other.dead_s) > DEAD_S:
             yield f"{each.axis} answers after {each.dead_s:.2f} s, the models' robot after {other.dead_s:.2f} s"
         longer_s = each.commanded / each.slope - other.commanded / other.slope
-        if abs(each.slope / other.slope - 1.0) > SLOPE and abs(longer_s) > max(RISE_S, PERIODS * each.period_s):
+        if abs(each.slope / other.slope - 1.0) > SLOPE and abs(longer_s) > max(RISE_S, SMOOTHED / 2 * each.period_s):
             unit = f"{each.unit}²" if each.unit.endswith("/s") else f"{each.unit}/s"
             yield f"{each.axis} accelerates with {each.slope:.2f} {unit}, the models' robot with {other.slope:.2f}"
         if abs(each.speed / other.speed - 1.0) > SPEED:
