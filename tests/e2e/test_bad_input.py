@@ -127,7 +127,7 @@ def test_a_folder_is_no_output(tmp_path):
 def test_a_bus_for_other_machines_without_keys_is_refused_before_anything_starts(tmp_path, command):
     """A robot would drive, and nobody on another machine could stop it."""
     line = refused(*command, "--secure", "--keys", tmp_path / "none", "--connect", free_endpoint())
-    assert "none/router: no authority.pem, expected a folder that `tailor keys new NAME` made" in line
+    assert "none/router: no authority.pem, expected a folder that `tailor keys new router --host ADDRESS` made" in line
 
 
 @pytest.mark.promise("P39")

@@ -68,5 +68,7 @@ def identity_in(folder: str) -> Identity:
     """
     for name in (AUTHORITY, CERTIFICATE, PRIVATE_KEY):
         if not (Path(folder) / name).is_file():
-            raise UsageError(f"{folder}: no {name}, expected a folder that `tailor keys new NAME` made")
+            options = "--host ADDRESS" if Path(folder).name == "router" else "--role ROLE"
+            made = f"tailor keys new {Path(folder).name} {options}"
+            raise UsageError(f"{folder}: no {name}, expected a folder that `{made}` made")
     return Identity(Path(folder).resolve())
