@@ -9,6 +9,7 @@ from typing import Any
 
 from matplotlib import collections as mc
 from matplotlib.figure import Figure
+from matplotlib.transforms import ScaledTranslation
 
 from tailor.tools.figures.track import Track, TrackPoint
 from tailor.tools.scenes.flat import Outline
@@ -19,14 +20,20 @@ SCALE_MPS = 0.5
 LABELLED = len(COLOURS)  # actions in the legend; a run that fails may repeat its last one many times
 PANEL_IN, HIGHEST_IN, FRAME_IN = 4.4, 6.4, 1.7  # width of a field, its greatest height, and what title and legend take
 
+LEGEND_IN = 0.5  # from an axis down to its legend: ticks and name of the axis lie between, however flat it is
+
 
 def draw_paths(tracks: list[Track], path: Path) -> None:
     """Draw the runs side by side, to the same scale, into a PNG."""
-    figure = Figure(figsize=size_in(tracks), layout="constrained")
-    axes = figure.subplots(1, len(tracks), squeeze=False)[0]
-    draw_side_by_side(axes, tracks)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=130)
+    figure_of(tracks).savefig(path, dpi=130)
+
+
+def figure_of(tracks: list[Track]) -> Figure:
+    """The runs side by side, to the same scale."""
+    figure = Figure(figsize=size_in(tracks), layout="constrained")
+    draw_side_by_side(figure.subplots(1, len(tracks), squeeze=False)[0], tracks)
+    return figure
 
 
 def draw_side_by_side(axes: Sequence[Any], tracks: Sequence[Track]) -> None:
@@ -74,7 +81,9 @@ def _draw_legend(axis: Any) -> None:
         (rest,) = axis.plot([], [], linestyle="none")
         handles, labels = [*handles[:LABELLED], rest], [*labels[:LABELLED], f"and {len(labels) - LABELLED} more"]
     if labels:
-        axis.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize="small")
+        below = axis.transAxes + ScaledTranslation(0.0, -LEGEND_IN, axis.figure.dpi_scale_trans)
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "bbox_transform": below}
+        axis.legend(handles, labels, ncols=2, fontsize="small", **place)
 
 
 def across(point: TrackPoint) -> list[tuple[float, float]]:

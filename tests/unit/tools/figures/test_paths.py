@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from matplotlib.figure import Figure
 
-from tailor.tools.figures.paths import HIGHEST_IN, LABELLED, PANEL_IN, draw_path, size_in
+from tailor.tools.figures.paths import HIGHEST_IN, LABELLED, PANEL_IN, draw_path, figure_of, size_in
 from tailor.tools.figures.track import Track, TrackPoint
 
 
@@ -20,6 +20,16 @@ def labels_of(actions: int) -> list[str]:
 def test_a_legend_names_the_first_actions_and_counts_the_others() -> None:
     assert labels_of(LABELLED + 1) == ["go"] * (LABELLED + 1), "one more would take the same line"
     assert labels_of(LABELLED + 5) == [*["go"] * LABELLED, "and 5 more"]
+
+
+@pytest.mark.parametrize("high_m", [0.3, 1.0, 4.0])
+def test_a_legend_lies_below_the_name_of_its_axis(high_m: float) -> None:
+    points = [TrackPoint(t, 3.0 * t, high_m * t, None, 1.0, {}, 0, "go") for t in (0.0, 1.0)]
+    figure = figure_of([Track("run", points)])
+    figure.draw_without_rendering()
+    (axis,) = figure.axes
+    name, legend = axis.xaxis.label.get_window_extent(), axis.get_legend().get_window_extent()
+    assert legend.y1 <= name.y0
 
 
 def test_a_run_without_motion_has_no_legend() -> None:
