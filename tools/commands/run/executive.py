@@ -1,4 +1,4 @@
-"""Run the executive on the bus: connect, arm the robot's driver, pursue the scenario's goal at 10 Hz."""
+"""Run the executive on the bus: connect, wait until people arm the driver, pursue the scenario's goal at 10 Hz."""
 
 from __future__ import annotations
 
