@@ -264,6 +264,12 @@ def test_training_writes_to_the_zoo_of_a_checkout_or_to_the_one_named(tmp_path: 
     assert target_zoo(Path("other"), "agilo", own) == Path("other")
 
 
+def test_training_ends_with_the_folder_of_its_models(tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setattr(train, "train_models", lambda request, on_action: [])
+    assert main(["train", "agilo", "--zoo", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"models in {tmp_path / 'agilo'}"
+
+
 @pytest.mark.parametrize("layout", ["courier_robot", "src/courier_robot"])
 def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package(
     tmp_path: Path, layout: str, monkeypatch

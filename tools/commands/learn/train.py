@@ -91,6 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(rows))
     else:
         table_console().print(_table(rows))
+        print(f"models in {request.zoo / request.robot}")
     return 0
 
 
