@@ -10,7 +10,7 @@ import pytest
 
 import tailor
 from tailor.tools.main import COMMANDS, GROUPS
-from tests.unit.house import draw_clauses, draw_roles
+from tests.unit.house import draw_clauses, draw_roles, draw_topics
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
 PAGES = [
@@ -82,6 +82,11 @@ def test_the_citation_names_the_version() -> None:
 def test_the_page_on_security_lists_every_role_with_its_rights() -> None:
     page = draw_roles.PAGE.read_text()
     assert draw_roles.drawn(page) == page, "run `python -m tests.unit.house.draw_roles`"
+
+
+def test_the_page_on_messages_lists_every_topic() -> None:
+    page = draw_topics.PAGE.read_text()
+    assert draw_topics.drawn(page) == page, "run `python -m tests.unit.house.draw_topics`"
 
 
 def test_the_page_on_the_contract_lists_every_clause() -> None:
