@@ -1,4 +1,4 @@
-"""The validator shares no code with the search; docs/planning.md lists the rooms as they are.
+"""The validator shares no code with the search; docs/planner.md lists the rooms as they are.
 
 The order of all rooms: tests/unit/house/rooms.toml.
 """
@@ -42,6 +42,6 @@ def test_the_documentation_lists_every_file_in_its_room():
         if path.startswith(PLANNING) and not path.endswith("__init__.py"):
             *room, name = path.removeprefix(PLANNING).removesuffix(".py").split("/")
             inside["/".join(room) or "root"].add(name)
-    text = (ROOT / "docs" / "planning.md").read_text().partition("## How the code is laid out")[2].partition("\n## ")[0]
+    text = (ROOT / "docs" / "planner.md").read_text().partition("## How the code is laid out")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| `?([\w/]+?)/?`?: [^|]*\| (.*) \|$", text, re.MULTILINE)
     assert {room: set(re.findall(r"`(\w+)`", files)) for room, files in rows} == inside
