@@ -9,8 +9,8 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
 from tailor.executive.planning.flaws.flaw_selection import FlawSelection
 from tailor.executive.planning.flaws.ranking import Ranking
-from tailor.executive.planning.ground_plans.extraction import Frame
-from tailor.executive.planning.ground_plans.separation import UnsettledError, makespan, separated
+from tailor.executive.planning.ground_plans.extraction import Frame, scheduled
+from tailor.executive.planning.ground_plans.separation import UnsettledError, makespan
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
 from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
@@ -77,13 +77,13 @@ class LiftedSpace:
 
     def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:
         """Objects for all variables and a schedule with them, of several the shortest; None if there are none."""
-        timed, world = self._task.ground.problem.timed, self._task.world
+        task, world = self._task.ground, self._task.world
         found: tuple[Bindings, Orderings] | None = None
         all_shortest = True
         completions = plan.bindings.completions()
         for bindings in itertools.islice(completions, MAX_COMPLETIONS):
             try:
-                schedule = separated(plan.orderings, _names(plan, bindings), timed, world)
+                schedule = scheduled(plan.orderings, _names(plan, bindings), task, world)
             except UnsettledError:
                 self._unsettled = True
                 continue

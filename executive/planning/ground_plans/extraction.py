@@ -10,11 +10,13 @@ from tailor.executive.planning.ground.durations import TimeGrid
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
+from tailor.executive.planning.ground_plans.events import events_of
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
 from tailor.executive.planning.ground_plans.separation import Schedule, separated
 from tailor.executive.planning.pddl.language import Action, And, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
@@ -73,16 +75,40 @@ class Frame:
         )
 
 
+def scheduled(orderings: Orderings, names: tuple[Fact, ...], task: GroundTask, world: StaticWorld) -> Schedule | None:
+    """The orderings of a plan without flaws, with interfering events apart; None if they cannot be.
+
+    Raises:
+      UnsettledError: As `separated`.
+    """
+    if not isinstance(orderings, TemporalNetwork):  # the steps follow one another
+        return Schedule(orderings)
+
+    def simulated(network: TemporalNetwork) -> Work[str]:
+        # loaded here: few plans have effects of which only a simulation tells whether they happen
+        from tailor.executive.planning.semantics.state import Objects
+        from tailor.executive.planning.semantics.validator import validation
+
+        frame = Frame(names, network, task.first_node, task.moments, task.grid)
+        return validation(frame.plan(task.problem, ()), world.domain, Objects(task.problem))
+
+    return separated(orderings, events_of(names, task.problem, world, orderings.late), simulated)
+
+
 def schedule(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Schedule | None:
-    """The orderings of a plan without flaws, with interfering events apart; None if they cannot be."""
-    return separated(plan.orderings, [action.name for action in plan.steps], task.problem.timed, world)
+    """As `scheduled`, of a ground plan."""
+    return scheduled(plan.orderings, _names(plan), task, world)
+
+
+def _names(plan: PartialPlan) -> tuple[Fact, ...]:
+    return tuple(action.name for action in plan.steps)
 
 
 def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
     """The finished plan of a ground search; there is a schedule of it."""
-    names, found = tuple(action.name for action in plan.steps), schedule(plan, task, world)
+    found = schedule(plan, task, world)
     assert found is not None
-    frame = Frame(names, found.orderings, task.first_node, task.moments, task.grid)
+    frame = Frame(_names(plan), found.orderings, task.first_node, task.moments, task.grid)
     return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
 
 

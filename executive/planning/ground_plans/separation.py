@@ -1,28 +1,25 @@
 """Keeps interfering events apart: as early as possible, events that no ordering relates may fall on the same time.
 
-Two events interfere if one changes what the other reads, or undoes what it adds (no moving targets: Fox & Long,
-PDDL 2.1, JAIR 20 (2003)). Causal links separate those that the plan needs; here are the others: conditions of effects
-that it does not need, alternatives that it did not choose.
+Causal links separate those that the plan needs; here are the others: conditions of effects that it does not need,
+alternatives that it did not choose.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from collections.abc import Set as AbstractSet
+import math
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
-from tailor.executive.planning.pddl.language import Action, And, Atom, Equal, Formula, Not, Or, Quantified, Typed
-from tailor.executive.planning.pddl.problem import TimedLiteral
+from tailor.executive.planning.ground_plans.events import Event
+from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.structures.orderings import FIRST, GOAL, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 Pair = tuple[int, int]  # nodes, the first before the second
 Choices = list[tuple[Pair, bool]]  # orderings that were added, and whether their opposites are left to try
+Simulation = Callable[[TemporalNetwork], Work[str]]  # of a schedule, as early as possible: "" if it is sound
 MAX_REVISED = 200  # orderings added once more after a wrong choice: some milliseconds, nearly all plans need none
-Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
-Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
+MAX_PORTIONS = 640  # of simulations of one plan, nearly all the events of one time: twenty milliseconds
 
 
 class UnsettledError(Exception):
@@ -36,81 +33,99 @@ class Schedule(NamedTuple):
     is_shortest: bool = True
 
 
-class Event(NamedTuple):
-    """The facts that a start, an end or a timed literal reads, adds and removes, as far as it may.
-
-    `reads` are those among the facts that some event changes: a quantifier may range over millions of others.
-    `uncertain` are changed under a condition alone, which may not hold, or both added and removed.
-    """
-
-    reads: frozenset[Fact] = frozenset()
-    added: frozenset[Fact] = frozenset()
-    removed: frozenset[Fact] = frozenset()
-    uncertain: frozenset[Fact] = frozenset()
-
-    def interferes(self, other: Event) -> bool:
-        """Whether the two must not happen at the same time."""
-        return not (
-            self.reads.isdisjoint(other.added | other.removed)
-            and other.reads.isdisjoint(self.added | self.removed)
-            and self.added.isdisjoint(other.removed)
-            and other.added.isdisjoint(self.removed)
-        )
-
-    def certain(self) -> Event:
-        """The event without the changes that may not happen."""
-        return self._replace(added=self.added - self.uncertain, removed=self.removed - self.uncertain)
-
-
-def separated(
-    orderings: Orderings, names: Sequence[Fact], timed: Sequence[TimedLiteral], world: StaticWorld
-) -> Schedule | None:
+def separated(orderings: TemporalNetwork, events: Sequence[Event], simulate: Simulation) -> Schedule | None:
     """The orderings with more of them, so that interfering events are a tick apart at their earliest times.
 
     Of several the ones with the least makespan, among as many as MAX_REVISED allows.
 
     Args:
       orderings: Of a plan without flaws: either order of two events that they do not relate is sound.
-      names: The actions of the steps, in the order of their nodes.
-      timed: The timed literals.
-      world: Objects and schemata of the actions.
+      events: The events, in the order of their nodes.
+      simulate: Tells whether events that may interfere do: they may stay together where their effects do not happen.
 
     Returns:
-      None if there is no such schedule. Without durations the steps follow one another: the same orderings.
+      None if there is no such schedule.
 
     Raises:
       UnsettledError: Too many choices failed, or events were kept apart whose effects may not happen.
     """
-    if not isinstance(orderings, TemporalNetwork):
-        return Schedule(orderings)
-    events = _events(names, timed, world)
-    network: TemporalNetwork | None = orderings
-    shortest: TemporalNetwork | None = None
-    chosen: Choices = []
-    revised = 0
-    is_certain = True  # whether all events that were kept apart must be
-    while network is not None:
-        if shortest is None or makespan(network) < makespan(shortest):
-            pair = _coincident(network, events)
-            if pair is not None:
-                first, second = (events[node - FIRST].certain() for node in pair)
-                is_certain &= first.interferes(second)
-            if pair is None:
-                shortest = network
-            elif (further := _with_pair(network, pair, chosen)) is not None:
-                network = further
-                continue
-        if shortest is not None and makespan(shortest) == makespan(orderings):
-            return Schedule(shortest)
-        revised += len(chosen)
-        if revised > MAX_REVISED:
-            if shortest is None:
+    return _Separation(orderings, events, simulate).schedule()
+
+
+class _Separation:
+    """A depth-first search through the orders of events that interfere."""
+
+    def __init__(self, orderings: TemporalNetwork, events: Sequence[Event], simulate: Simulation) -> None:
+        self._orderings = orderings
+        self._events = events
+        self._certain = [event.certain() for event in events]
+        self._simulate = simulate
+        self._portions = 0  # of simulations so far
+        self._chosen: Choices = []
+        self._shortest: TemporalNetwork | None = None
+        self._skipped = math.inf  # least makespan of the orderings that were left without all of their schedules
+
+    def schedule(self) -> Schedule | None:
+        """See `separated`."""
+        revised, least = 0, makespan(self._orderings)
+        network: TemporalNetwork | None = self._orderings
+        while network is not None:
+            network = self._further(network)
+            if network is None and self._best() > least:
+                revised += len(self._chosen)
+                if revised > MAX_REVISED:
+                    self._skipped = least
+                    break
+                network = _with_last_reversed(self._orderings, self._chosen)
+        if self._shortest is None:
+            if self._skipped < math.inf:
                 raise UnsettledError
-            return Schedule(shortest, is_shortest=False)
-        network = _with_last_reversed(orderings, chosen)
-    if shortest is None and not is_certain:
-        raise UnsettledError
-    return Schedule(shortest, is_certain) if shortest is not None else None
+            return None
+        return Schedule(self._shortest, self._best() <= self._skipped)
+
+    def _best(self) -> float:
+        return math.inf if self._shortest is None else makespan(self._shortest)
+
+    def _further(self, network: TemporalNetwork) -> TemporalNetwork | None:
+        """The orderings with two more events apart; None if they are a schedule, or lead to none that is shorter."""
+        if makespan(network) >= self._best():
+            return None
+        pair, is_certain = self._coincident(network)
+        if pair is None or (not is_certain and self._is_sound(network)):
+            self._shortest = network
+            return None
+        if not is_certain:  # at other times the two may happen together
+            self._skipped = min(self._skipped, makespan(network))
+        return _with_pair(network, pair, self._chosen)
+
+    def _coincident(self, network: TemporalNetwork) -> tuple[Pair | None, bool]:
+        """The nodes of the first two events that are less than a tick apart and interfere, and whether they must.
+
+        Only if there are no such two, those that may.
+        """
+        times, events, certain = network.earliest(), self._events, self._certain
+        nodes = sorted(range(FIRST, FIRST + len(events)), key=lambda node: (times[node], node))
+        possible: Pair | None = None
+        for n, a in enumerate(nodes):
+            for b in nodes[n + 1 :]:
+                if times[b] - times[a] >= network.tick:
+                    break
+                if events[a - FIRST].interferes(events[b - FIRST]):
+                    if certain[a - FIRST].interferes(certain[b - FIRST]):
+                        return (a, b), True
+                    possible = possible or (a, b)
+        return possible, False
+
+    def _is_sound(self, network: TemporalNetwork) -> bool:
+        """Whether no events interfere at their earliest times; False where that takes too long to tell."""
+        work = self._simulate(network)
+        while self._portions < MAX_PORTIONS:
+            self._portions += 1
+            try:
+                next(work)
+            except StopIteration as ended:
+                return ended.value == ""
+        return False
 
 
 def makespan(orderings: Orderings) -> float:
@@ -141,110 +156,3 @@ def _with_last_reversed(orderings: TemporalNetwork, chosen: Choices) -> Temporal
         if network is not None:
             return network
     return None
-
-
-def _coincident(network: TemporalNetwork, events: Sequence[Event]) -> tuple[int, int] | None:
-    """The nodes of the first two interfering events that are less than a tick apart."""
-    times = network.earliest()
-    nodes = sorted(range(FIRST, FIRST + len(events)), key=lambda node: (times[node], node))
-    for n, a in enumerate(nodes):
-        for b in nodes[n + 1 :]:
-            if times[b] - times[a] >= network.tick:
-                break
-            if events[a - FIRST].interferes(events[b - FIRST]):
-                return a, b
-    return None
-
-
-class _Moments(NamedTuple):
-    """The moments of a step that one event covers."""
-
-    schema: Action
-    binding: Binding
-    moments: tuple[str, ...]
-
-
-def _events(names: Sequence[Fact], timed: Sequence[TimedLiteral], world: StaticWorld) -> list[Event]:
-    """The events of the timed literals and of the steps, in the order of their nodes."""
-    parts = [part for name in names for part in _both_ends(name, world)]
-    literals, steps = [_literal(each) for each in timed], [_changes(part, world) for part in parts]
-    changed: dict[str, set[Fact]] = {}
-    for event in (*literals, *steps):
-        for fact in event.added | event.removed:
-            changed.setdefault(fact[0], set()).add(fact)
-    reading = zip(steps, parts, strict=True)
-    return [*literals, *(event._replace(reads=_reads(part, changed, world)) for event, part in reading)]
-
-
-def _literal(timed: TimedLiteral) -> Event:
-    facts = frozenset({timed.literal.fact})
-    return Event(added=facts) if timed.literal.positive else Event(removed=facts)
-
-
-def _both_ends(name: Fact, world: StaticWorld) -> tuple[_Moments, _Moments]:
-    """The start and the end of an action; all of one without duration belongs to its start."""
-    schema = next(action for action in world.domain.actions if action.name == name[0])
-    binding = {p.name: argument for p, argument in zip(schema.parameters, name[1:], strict=True)}
-    start, end = (("start", "end"), ()) if schema.duration is None else (("start",), ("end",))
-    return _Moments(schema, binding, start), _Moments(schema, binding, end)
-
-
-def _changes(part: _Moments, world: StaticWorld) -> Event:
-    """The event, without what it reads."""
-    changes: tuple[set[Fact], set[Fact]] = set(), set()
-    certain: set[Fact] = set()
-    for effect in part.schema.effects:
-        if effect.when in part.moments:
-            for inner in bindings(effect.variables, part.binding, world):
-                fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
-                changes[effect.positive].add(fact)
-                if not effect.condition:
-                    certain.add(fact)
-    removed, added = map(frozenset, changes)
-    return Event(added=added, removed=removed, uncertain=((added | removed) - certain) | (added & removed))
-
-
-def _reads(part: _Moments, changed: Changed, world: StaticWorld) -> frozenset[Fact]:
-    """The changed facts that an event reads, in conditions of the action or of its effects."""
-    terms: Terms = {name: (value,) for name, value in part.binding.items()}
-    read = [(condition, terms) for condition in part.schema.conditions]
-    for effect in part.schema.effects:
-        if (inner := _chosen(effect.variables, terms, world)) is not None:
-            read += [(condition, inner) for condition in effect.condition]
-    own = ((condition.formula, inner) for condition, inner in read if condition.when in part.moments)
-    return frozenset(fact for formula, inner in own for fact in _mentioned(formula, inner, changed, world))
-
-
-def _chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Terms | None:
-    """The terms with variables that stand for all objects of their types; None if there are none for one of them."""
-    choices = {variable.name: world.choices(variable) for variable in variables}
-    return {**terms, **choices} if all(choices.values()) else None
-
-
-def _mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
-    """The changed facts that a formula mentions, for all objects of its variables."""
-    match formula:
-        case Atom(predicate, names):
-            facts, choices = changed.get(predicate, frozenset()), [terms.get(name, (name,)) for name in names]
-            if all(len(objects) == 1 for objects in choices):  # most atoms: no need to look at every fact
-                yield from facts & {(predicate, *(name for (name,) in choices))}
-            else:
-                yield from (fact for fact in facts if _fits(names, fact[1:], choices))
-        case Not(part):
-            yield from _mentioned(part, terms, changed, world)
-        case And(parts) | Or(parts):
-            for part in parts:
-                yield from _mentioned(part, terms, changed, world)
-        case Quantified(_, variables, part):
-            if (inner := _chosen(variables, terms, world)) is not None:
-                yield from _mentioned(part, inner, changed, world)
-        case Equal():
-            pass
-
-
-def _fits(names: Sequence[str], objects: Sequence[str], choices: Sequence[Sequence[str]]) -> bool:
-    """Whether names can stand for these objects, of those that each may choose from, and each for one only."""
-    chosen = dict(zip(names, objects, strict=True))
-    return all(
-        chosen[name] == actual and actual in own for name, actual, own in zip(names, objects, choices, strict=True)
-    )

@@ -1,0 +1,61 @@
+"""The facts that a formula mentions, among those that some event of a plan changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+
+from tailor.executive.interfaces.values import Fact
+from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
+from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
+
+Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
+Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
+
+
+def by_predicate(facts: Iterable[Fact]) -> Changed:
+    """The facts as `mentioned` takes them."""
+    changed: dict[str, set[Fact]] = {}
+    for fact in facts:
+        changed.setdefault(fact[0], set()).add(fact)
+    return changed
+
+
+def terms_of(binding: Binding) -> Terms:
+    """The terms of a binding: each variable stands for one object."""
+    return {name: (value,) for name, value in binding.items()}
+
+
+def chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Terms | None:
+    """The terms with variables that stand for all objects of their types; None if there are none for one of them."""
+    choices = {variable.name: world.choices(variable) for variable in variables}
+    return {**terms, **choices} if all(choices.values()) else None
+
+
+def mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
+    """The changed facts that a formula mentions, for all objects of its variables."""
+    match formula:
+        case Atom(predicate, names):
+            facts, choices = changed.get(predicate, frozenset()), [terms.get(name, (name,)) for name in names]
+            if all(len(objects) == 1 for objects in choices):  # most atoms: no need to look at every fact
+                yield from facts & {(predicate, *(name for (name,) in choices))}
+            else:
+                yield from (fact for fact in facts if _fits(names, fact[1:], choices))
+        case Not(part):
+            yield from mentioned(part, terms, changed, world)
+        case And(parts) | Or(parts):
+            for part in parts:
+                yield from mentioned(part, terms, changed, world)
+        case Quantified(_, variables, part):
+            if (inner := chosen(variables, terms, world)) is not None:
+                yield from mentioned(part, inner, changed, world)
+        case Equal():
+            pass
+
+
+def _fits(names: Sequence[str], objects: Sequence[str], choices: Sequence[Sequence[str]]) -> bool:
+    """Whether names can stand for these objects, of those that each may choose from, and each for one only."""
+    own_of = dict(zip(names, objects, strict=True))
+    return all(
+        own_of[name] == actual and actual in own for name, actual, own in zip(names, objects, choices, strict=True)
+    )
