@@ -1,9 +1,13 @@
 """Lifted against ground planning on small random problems of the whole language: one verdict, and every plan sound."""
 
-from hypothesis import HealthCheck, given, settings
+from itertools import product
+
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive.planning import Settings, validate
+from tailor.executive.planning.semantics.action_effects import apply_action
+from tailor.executive.planning.semantics.state import Objects, conditions_at, holds
 from tests.support.planning.planning_problems import read, solve
 
 NAMES = ["?x", "?y", "a", "b"]
@@ -108,16 +112,16 @@ def tasks(word, action, windows):
     )
 
 
-def agree(texts):
-    """Both find sound plans; neither proves unsolvable what the other solves."""
-    domain, problem = read(*texts)
+def agree(domain, problem):
+    """Both find sound plans; neither proves unsolvable what the other solves. The results by mode, ground first."""
     found = {}
     for ground in (True, False):
         result = solve(domain, problem, Settings(node_limit=100, ground=ground))
-        found[ground] = result.status
+        found[ground] = result
         if result.plan is not None:
-            assert validate(result.plan, domain, problem) == "", f"{'ground' if ground else 'lifted'} {texts}"
-    assert set(found.values()) != {"solved", "unsolvable"}, f"{found} {texts}"
+            assert validate(result.plan, domain, problem) == "", f"{'ground' if ground else 'lifted'} {problem}"
+    statuses = {result.status for result in found.values()}
+    assert statuses != {"solved", "unsolvable"}, f"{statuses} {problem}"
     return found
 
 
@@ -127,10 +131,57 @@ SMALL = settings(max_examples=60, deadline=None, derandomize=True, suppress_heal
 @SMALL
 @given(tasks(":action", INSTANT, windows=0))
 def test_lifted_and_ground_agree_on_instant_actions(texts):
-    agree(texts)
+    agree(*read(*texts))
 
 
 @SMALL
 @given(tasks(":durative-action", DURATIVE, windows=2))
 def test_lifted_and_ground_agree_on_durative_actions_and_timed_literals(texts):
-    agree(texts)
+    agree(*read(*texts))
+
+
+# --- goals that actions reach by undoing what others need -------------------------------------------
+def moves(domain, problem, state):
+    """The names of the actions that change a state, and the states that they lead to."""
+    objects = Objects(problem)
+    for action in domain.actions:
+        for names in product(*(objects.of(p) for p in action.parameters)):
+            binding = dict(zip((p.name for p in action.parameters), names, strict=True))
+            if holds(conditions_at(action.conditions, "start"), binding, state, objects):
+                after = apply_action(domain, problem, state, (action.name, *names))
+                if after != state:
+                    yield after
+
+
+def strolled(domain, problem, rng):
+    """The problem with some of what four random actions change as its goal."""
+    state = first = frozenset(problem.initial)
+    for _ in range(4):
+        ways = sorted(moves(domain, problem, state), key=sorted)
+        state = rng.choice(ways) if ways else state
+    changed = [f"({' '.join(fact)})" for fact in sorted(state - first)]
+    changed += [f"(not ({' '.join(fact)}))" for fact in sorted(first - state)]
+    assume(len(changed) > 1)
+    return problem.with_goal(f"(and {' '.join(rng.sample(changed, min(3, len(changed))))})")
+
+
+PLAIN = st.builds(
+    ":parameters (?x ?y) :precondition {} :effect {}".format,
+    joined("and", LITERAL, max_size=2),
+    joined("and", LITERAL, min_size=1, max_size=3),
+)
+
+
+def test_lifted_and_ground_agree_where_actions_undo_what_others_need():
+    steps = []
+
+    @SMALL
+    @given(tasks(":action", PLAIN, windows=0), st.randoms(use_true_random=False))
+    def check(texts, rng):
+        domain, problem = read(*texts)
+        found = agree(domain, strolled(domain, problem, rng))
+        assert {result.status for result in found.values()} <= {"solved", "limit"}
+        steps.append(len(found[False].plan.steps) if found[False].plan else 0)
+
+    check()
+    assert sum(count > 1 for count in steps) > 10  # a single action is threatened by no other
