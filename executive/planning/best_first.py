@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Generic
 
@@ -19,6 +19,8 @@ from tailor.executive.planning.settings import FlawOrder, Settings
 INITIAL_QUOTA = 1000  # plans that each flaw order generates in the first round; doubles with every round
 
 MAX_ENTRIES = 40_000_000  # of the orderings of a queue's plans, 10 to 20 bytes each: half a gigabyte, seldom more
+
+RANKED_AT_ONCE = 20_000  # open conditions of the plans ranked between two units of budget: two milliseconds
 
 Ranked = tuple[Any, ...]  # a rank with its plan as last item: one flat tuple is compared faster than two nested
 
@@ -100,8 +102,19 @@ class BestFirst(Generic[P]):
                     return
                 continue
             self.visited += 1
-            queue.generated += self._push(space.refine(plan, queue.order), plans, queue.limit - queue.generated)
+            children = space.refine(plan, queue.order)
+            if len(children) * plan.open_count > RANKED_AT_ONCE:
+                children = yield from self._push_portions(children, queue, RANKED_AT_ONCE // plan.open_count or 1)
+            queue.generated += self._push(children, plans, queue.limit - queue.generated)
             yield None
+
+    def _push_portions(self, children: list[P], queue: _Queue, portion: int) -> Generator[None, None, list[P]]:
+        """Pushes all plans but the last portion, which it returns; yields after each portion."""
+        while len(children) > portion:
+            queue.generated += self._push(children[:portion], queue.plans, queue.limit - queue.generated)
+            children = children[portion:]
+            yield None
+        return children
 
     def _push(self, children: list[P], plans: list[Ranked], most: float) -> int:
         """Pushes the plans of finite rank, at most so many; returns their number."""

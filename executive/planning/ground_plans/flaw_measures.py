@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tailor.executive.planning.ground.additive_heuristic import Value, literals_of
+from tailor.executive.planning.ground.ground_action import GroundAction
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.open_conditions import reusable
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat
@@ -16,6 +17,8 @@ class GroundFlawMeasures:
     def __init__(self, task: GroundTask) -> None:
         self._task = task
         self._first, self._moments = task.first_node, task.moments
+        self._restored_of: tuple[GroundAction, ...] = ()
+        self._restored_nodes: dict[int, int] = {}
         self.count_threat_refinements = count_refinements
 
     def is_separable(self, plan: PartialPlan, threat: Threat) -> bool:
@@ -32,19 +35,25 @@ class GroundFlawMeasures:
 
     def is_unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`; as for VHPOP 2.2.1, also by a step that restores at once what it deletes."""
-        if isinstance(condition.condition, Disjunction):
+        part, earlier = condition.condition, ~plan.orderings.late[condition.last] & ~(1 << condition.first)
+        if isinstance(part, Disjunction):
             return False
-        masks, earlier = plan.effects.masks(), ~plan.orderings.late[condition.last] & ~(1 << condition.first)
-        undoing = {literal ^ 1 for literal in literals_of(condition.condition)}
-        return any(masks[literal] & earlier for literal in undoing) or self._is_restored(plan, undoing, earlier)
+        masks, restored = plan.effects.masks(), self._restored(plan.steps)
+        undoing = (part ^ 1,) if isinstance(part, int) else [literal ^ 1 for literal in literals_of(part)]
+        return any((masks[literal] | restored.get(literal, 0)) & earlier for literal in undoing)
 
-    def _is_restored(self, plan: PartialPlan, undoing: set[int], nodes: int) -> bool:
-        """Whether a step makes one of the literals true at one of the nodes, and false again at once."""
-        return any(
-            effect.literal in undoing and nodes >> (self._first + number * self._moments + effect.moment) & 1
-            for number, action in enumerate(plan.steps)
-            for effect in action.restored
-        )
+    def _restored(self, steps: tuple[GroundAction, ...]) -> dict[int, int]:
+        """By literal the mask of the nodes at which a step makes it true, and false again at once.
+
+        Those of the last steps are kept: a plan may have thousands of conditions.
+        """
+        if steps is not self._restored_of:
+            self._restored_of, self._restored_nodes = steps, {}
+            for number, action in enumerate(steps):
+                for effect in action.restored:
+                    bit = 1 << self._first + number * self._moments + effect.moment
+                    self._restored_nodes[effect.literal] = self._restored_nodes.get(effect.literal, 0) | bit
+        return self._restored_nodes
 
     def count_condition_refinements(self, plan: PartialPlan, condition: OpenCondition) -> int:
         """See `FlawMeasures`."""

@@ -7,8 +7,16 @@ from typing import NamedTuple
 from tailor.executive.planning.ground.ground_action import GroundAction, GroundEffect
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, Threat, new
-from tailor.executive.planning.ground_plans.threat_detection import Spanned, guarded_links, threats_by, threats_to
+from tailor.executive.planning.ground_plans.threat_detection import (
+    LinksByLiteral,
+    Spanned,
+    guarded_links,
+    threats_by,
+    threats_to,
+)
 from tailor.executive.planning.structures.orderings import Orderings
+
+MANY_LINKS = 200  # plans of everyday problems have fewer; looking at so many takes as long as making a plan
 
 
 class _Insertion(NamedTuple):
@@ -35,6 +43,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
     steps, _, effects, links, opened, _, open_count, _, cost = plan
     node = len(plan.orderings.late)
     guarded = guarded_links(links)
+    by_literal = LinksByLiteral(guarded) if len(guarded) > MANY_LINKS else None
     insertions: dict[tuple[int, int, int | None, int], _Insertion | None] = {}
     children = []
     for action, effect in achievers:
@@ -46,6 +55,8 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
         if insertion is None:
             continue
         orderings, link, threats, count = insertion
+        if by_literal is not None:
+            guarded = by_literal.undone_by(action)
         threats, count = threats_by(action, node, orderings.late, guarded, threats, count)
         conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
         children.append(

@@ -26,6 +26,22 @@ def guarded_links(link: Link | None) -> Guarded:
     return guarded
 
 
+class LinksByLiteral:
+    """Many links by the literal that undoes them: not all are looked at for each of many new steps."""
+
+    def __init__(self, guarded: Guarded) -> None:
+        """Takes the links, newest first."""
+        self._guarded = guarded
+        self._places: dict[int, list[int]] = {}
+        for place, (undoing, _) in enumerate(guarded):
+            self._places.setdefault(undoing, []).append(place)
+
+    def undone_by(self, action: GroundAction) -> Guarded:
+        """The links that an action may undo, newest first."""
+        places = sorted(place for literal in action.bits for place in self._places.get(literal, ()))
+        return [self._guarded[place] for place in places]
+
+
 def threats_to(
     task: GroundTask,
     steps: tuple[GroundAction, ...],

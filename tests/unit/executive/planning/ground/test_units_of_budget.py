@@ -1,14 +1,16 @@
-"""Grounding checks the budget after so much work, not only after so many bindings of an action."""
+"""Grounding and search check the budget after so much work, not only after so many bindings or refined plans."""
 
 from itertools import pairwise
 
 import pytest
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import Search, Settings
+from tailor.executive.planning import MATCHING, Search, Settings, best_first
+from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground import grounding
 from tailor.executive.planning.ground.ground_formula import GroundingLimit
-from tests.support.planning.planning_problems import read
+from tailor.executive.planning.ground_plans import new_steps
+from tests.support.planning.planning_problems import own, read, solve
 
 DOMAIN = """(define (domain d) (:predicates (p ?x ?y ?z) (g ?x)) (:action make :parameters (?x) :effect (p ?x ?x ?x))
   (:action use :parameters (?x) :precondition (forall (?y ?z) (not (p ?x ?y ?z))) :effect (g ?x)))"""
@@ -77,3 +79,31 @@ def test_schemata_with_too_many_literals_for_variables_are_refused_by_name():
     assert result.status == "limit"
     assert result.reason == "600 conditions of 'use' and 601 effects of 'use' are too many for planning with variables"
     assert Search(domain, problem).advance(CheckBudget(10**9)).status == "solved"
+
+
+MANY_WAYS = """(define (domain d) (:predicates (p ?x) (g)) (:action one :parameters (?x) :effect (p ?x))
+  (:action all :parameters (?x ?y) :effect (and (g) (p ?x))))"""
+
+
+def test_large_plans_are_ranked_in_several_units_of_the_budget(monkeypatch):
+    monkeypatch.setattr(best_first, "RANKED_AT_ONCE", 200)
+    budget, rank = MeteredBudget(), Ranking.rank
+
+    def counted(ranking, plan, number):
+        budget.steps += plan.open_count
+        return rank(ranking, plan, number)
+
+    monkeypatch.setattr(Ranking, "rank", counted)
+    objects = " ".join(f"o{n}" for n in range(20))
+    problem = f"(define (problem x) (:domain d) (:objects {objects}) (:goal (and (g) (forall (?x) (p ?x)))))"
+    Search(*read(MANY_WAYS, problem), Settings(engine="pocl", node_limit=2000)).advance(budget)
+    assert budget.steps > 10_000
+    assert budget.most_between_checks() <= 200 + 10  # a plan may have a condition more than its parent
+
+
+@pytest.mark.parametrize("name", ["kitchen-reach-s2", "kitchen-durative-s2"])
+def test_portions_and_tables_of_links_change_no_plan_and_no_count(monkeypatch, name):
+    whole = solve(*own(name), MATCHING)
+    monkeypatch.setattr(best_first, "RANKED_AT_ONCE", 1)
+    monkeypatch.setattr(new_steps, "MANY_LINKS", 0)
+    assert solve(*own(name), MATCHING) == whole
