@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from tailor.executive.interfaces.budget import Budget
@@ -20,7 +20,7 @@ from tailor.executive.planning.structures.orderings import GOAL
 from tailor.executive.planning.structures.random_source import RandomSource
 from tailor.executive.planning.structures.refinable import Refinable
 
-SLACK = 1e-9  # of sums of floats
+SLACK, RELATIVE_SLACK = 1e-9, 1e-12  # of sums of costs: the lesser of the two; floats have 16 digits
 
 
 class AnytimeSearch:
@@ -96,7 +96,8 @@ class AnytimeSearch:
         task: GroundTask = yield from make_task(self._problem, grounded, settings.action_cost)
         space = yield from plan_space(task, grounded, settings, RandomSource(settings.seed))
         engine = BestFirst[Any](space, settings)
-        engine.goes_on, engine.is_hopeless = True, _Bound(self, task).is_hopeless
+        bound = _Bound(self.measure, task, self.value)
+        engine.goes_on, engine.is_hopeless = True, bound.is_hopeless
         self._second = engine
         for result in engine.run():
             if result is None:
@@ -105,8 +106,9 @@ class AnytimeSearch:
                 self.ended = "proven" if result.status == "unsolvable" else result.reason
                 yield None
                 return
-            elif (value := quality(result.plan, self._problem)) < self.value - SLACK:
+            elif bound.is_better(value := quality(result.plan, self._problem)):
                 self.value = value
+                bound.lower(value)
                 self.best = replace(result, generated=self.counts[0], visited=self.counts[1])
                 yield self.best
             else:
@@ -118,26 +120,36 @@ class AnytimeSearch:
         return MAKESPAN_RANKINGS if self.measure == "makespan" else DEFAULT_RANKINGS
 
 
-@dataclass(frozen=True, slots=True)
 class _Bound:
     """Recognises partial plans that can only become as good as the best plan, or worse."""
 
-    search: AnytimeSearch
-    task: GroundTask
+    def __init__(self, measure: Measure, task: GroundTask, value: float) -> None:
+        self._measure, self._task = measure, task
+        self.lower(value)
+
+    def lower(self, value: float) -> None:
+        """Sets the value of the best plan."""
+        slack = min(SLACK, value * RELATIVE_SLACK) if self._measure == "cost" else 0
+        self._limit = self._exact(value) - slack
+
+    def is_better(self, value: float) -> bool:
+        """Whether a plan of this value is better than the best one."""
+        return self._exact(value) < self._limit
 
     def is_hopeless(self, plan: Refinable) -> bool:
         """Whether all plans below are no better; times and costs only grow as steps are added."""
-        return self._least(plan) >= self.search.value - SLACK
-
-    def _least(self, plan: Refinable) -> float:
-        match self.search.measure:
+        match self._measure:
             case "cost":
-                return plan.cost
+                return plan.cost >= self._limit
             case "makespan":
                 latest = plan.orderings.earliest()[GOAL]
-                return self.task.grid.seconds(latest) if self.task.temporal else latest - 1
+                return (latest if self._task.temporal else latest - 1) >= self._limit
             case _:
-                return len(plan.steps)
+                return len(plan.steps) >= self._limit
+
+    def _exact(self, value: float) -> float:
+        """A makespan in whole units of the time grid: durations may differ by a nanosecond."""
+        return self._task.grid.units(value) if self._measure == "makespan" and self._task.temporal else value
 
 
 class _One:

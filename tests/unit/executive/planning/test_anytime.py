@@ -105,6 +105,42 @@ def test_costs_are_minimised(settings):
     assert search.ended == "proven"
 
 
+ONE_OR_TWO = """(define (domain d) (:predicates (g) (h)) (:functions (total-cost))
+  (:action one :effect (and (g) (increase (total-cost) {})))
+  (:action first :effect (and (h) (increase (total-cost) {})))
+  (:action second :precondition (h) :effect (and (g) (increase (total-cost) {}))))"""
+
+
+@pytest.mark.parametrize("costs", [("9e-10", "1e-10", "1e-10"), ("1e9", "999999999", "0.9999"), ("0.3", "0.1", "0.1")])
+def test_small_differences_of_costs_count(costs):
+    problem = "(define (problem x) (:domain d) (:init) (:goal (g)) (:metric minimize (total-cost)))"
+    domain, problem = read(ONE_OR_TWO.format(*costs), problem)
+    search, _ = improvements(domain, problem, DEFAULT)
+    assert [step.action for step in search.best.plan.steps] == [("first",), ("second",)]
+    assert search.ended == "proven"
+
+
+@pytest.mark.parametrize("ground", [True, False])
+def test_a_makespan_that_is_a_nanosecond_shorter_is_better(ground):
+    def action(name, duration, effect, condition=""):
+        return (
+            f"(:durative-action {name} :parameters () :duration (= ?duration {duration})"
+            f" :condition (at start (and {condition})) :effect (at end {effect}))"
+        )
+
+    actions = [
+        action("one", "100.000000002", "(g)"),
+        action("first", "50", "(h)"),
+        action("second", "49.990000001", "(g)", "(h)"),
+    ]
+    domain, problem = read(
+        f"(define (domain d) (:predicates (g) (h)) {' '.join(actions)})",
+        "(define (problem x) (:domain d) (:init) (:goal (g)))",
+    )
+    search, _ = improvements(domain, problem, Settings(ground=ground))
+    assert (len(search.best.plan.steps), search.ended) == (2, "proven")
+
+
 def test_a_search_without_more_ranks_by_the_cost_first():
     domain, problem = read(ROADS, TRIP)
     assert [step.action for step in solve(domain, problem, DEFAULT).plan.steps] == DRIVES
