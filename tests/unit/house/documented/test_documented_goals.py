@@ -11,7 +11,7 @@ from tailor.executive.domains import load_scenario, scenarios
 from tailor.schemas.ros2 import service
 from tailor.tools.commands.run import goal
 from tests.unit.house.arrows import ROOT
-from tests.unit.house.test_documented_commands import PAGES
+from tests.unit.house.documented.test_documented_commands import PAGES
 
 COMMAND = re.compile(r"""tailor goal ["'](\([^"']+)["']""")
 CALL = re.compile(r"\{goal: '([^']+)'\}")

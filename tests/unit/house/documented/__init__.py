@@ -1,0 +1,1 @@
+"""Flags, settings and goals that pages name, compared with those that there are."""
