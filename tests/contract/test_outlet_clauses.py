@@ -6,8 +6,10 @@ import pytest
 
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.outlet import outlets_of
+from tailor.schemas.errors import UsageError
 from tailor.tools.contract.subject import Subject
 from tailor.tools.contract.suite import CLAUSES, cases, faults
+from tailor.tools.contract.trial import try_command
 from tests.support.bus_system import ROOT
 from tests.support.robots.known_robot import known_package
 
@@ -87,3 +89,16 @@ def test_a_command_beyond_the_axes_of_its_outlet_is_found(subject):
     squeeze = dataclasses.replace(subject.domain.actions["Squeeze"], controller=wide)
     subject.domain.actions = {**subject.domain.actions, "Squeeze": squeeze}
     assert any("width" in each for each in found(subject, "commands_are_within_the_axes"))
+
+
+def test_a_command_of_all_axes_by_an_action_that_drives_some_is_found(subject):
+    """The executive refuses it, live."""
+
+    def all_axes(state, now_ns, belief, arguments):
+        return Control(None, (0.0, 0.1), "running" if now_ns < 2e9 else "done")
+
+    squeeze = dataclasses.replace(subject.domain.actions["Squeeze"], controller=all_axes)
+    subject.domain.actions = {**subject.domain.actions, "Squeeze": squeeze}
+    assert found(subject, "commands_are_within_the_axes") == ["2 values, expected 1: width"]
+    with pytest.raises(UsageError, match="controller of Squeeze: 2 values, expected 1: width"):
+        try_command(subject.domain, "Squeeze")

@@ -8,6 +8,7 @@ import numpy as np
 
 from tailor.tools.contract.clause import clause
 from tailor.tools.contract.subject import Subject
+from tailor.tools.contract.trial import command_fault
 
 SAMPLES = 20
 ROWS = 50
@@ -61,7 +62,10 @@ def runs_follow_the_seed(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("action", needs="body")
 def commands_are_within_the_axes(subject: Subject, case: str) -> Iterator[str]:
-    """The controller commands finite values, one an axis and within its limits."""
+    """The controller commands finite values, one for each axis that the action drives and within its limits."""
+    if fault := command_fault(subject.domain, case, np.random.default_rng(0)):
+        yield fault
+        return
     axes = subject.domain.axes
     for seed in range(subject.runs):
         for tick in subject.run(case, seed).trace:
