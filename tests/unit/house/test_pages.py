@@ -10,7 +10,7 @@ import pytest
 
 import tailor
 from tailor.tools.main import COMMANDS, GROUPS
-from tests.unit.house import draw_clauses, draw_roles, draw_topics
+from tests.unit.house import draw_clauses, draw_topics
 from tests.unit.house.arrows import OURS, ROOMS, ROOT
 
 PAGES = [
@@ -79,14 +79,9 @@ def test_the_citation_names_the_version() -> None:
     assert re.findall(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE) == [tailor.__version__]
 
 
-def test_the_page_on_security_lists_every_role_with_its_rights() -> None:
-    page = draw_roles.PAGE.read_text()
-    assert draw_roles.drawn(page) == page, "run `python -m tests.unit.house.draw_roles`"
-
-
-def test_the_page_on_messages_lists_every_topic() -> None:
-    page = draw_topics.PAGE.read_text()
-    assert draw_topics.drawn(page) == page, "run `python -m tests.unit.house.draw_topics`"
+@pytest.mark.parametrize("page", draw_topics.HEADS)
+def test_the_pages_on_security_and_messages_list_every_role_and_every_topic(page: str) -> None:
+    assert draw_topics.drawn(page) == draw_topics.text_of(page), "run `python -m tests.unit.house.draw_topics`"
 
 
 def test_the_page_on_the_contract_lists_every_clause() -> None:
