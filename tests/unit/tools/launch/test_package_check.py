@@ -37,6 +37,9 @@ first, (second, *others) = 1, (2, 3)
 """
 PARTS = {
     "scene = 'tailor_cart.scene': there is no module 'tailor_cart.scene'": {"scene": "tailor_cart.scene"},
+    "features = 'tailor_cart.bodies:SPACES': module 'tailor_cart.bodies' has no 'SPACES'": {
+        "features": "tailor_cart.bodies:SPACES"
+    },
     "body = 'tailor_cart.bodies:Missing': module 'tailor_cart.bodies' has no 'Missing'": {
         "body": "tailor_cart.bodies:Missing"
     },
