@@ -8,7 +8,7 @@ from tests.unit.house.arrows import ROOT
 
 HEADS = {  # by page
     "security.md": "| role | publishes | calls | serves |\n|---|---|---|---|\n",
-    "messages.md": "| key | type | Hz | from | stale after | meaning |\n|---|---|---|---|---|---|\n",
+    "messages.md": "| key | type | from | meaning |\n|---|---|---|---|\n",
 }
 
 
@@ -34,11 +34,11 @@ def _role(role: Role) -> str:
 
 
 def _topic(topic: Topic) -> str:
-    rate = f"{topic.rate_hz:g}" if topic.rate_hz else "on change"
-    stale = f"{topic.fresh_s:g} s" if topic.fresh_s else ""
+    rate = f"{topic.rate_hz:g} Hz" if topic.rate_hz else "on change"
+    stale = f", stale after {topic.fresh_s:g} s" if topic.fresh_s else ""
+    kind = ros_type(topic.type).replace("/msg/", "/")
     meaning = (topic.type.__doc__ or "").splitlines()[0]
-    key = topic.key.format(robot="<robot>")
-    return f"| `{key}` | {ros_type(topic.type)} | {rate} | {topic.source} | {stale} | {meaning} |\n"
+    return f"| `{topic.key.format(robot='<robot>')}` | `{kind}` | {topic.source}, {rate}{stale} | {meaning} |\n"
 
 
 if __name__ == "__main__":
