@@ -16,6 +16,7 @@ from tailor.executive.interfaces.outlet import outlets_of
 from tailor.executive.refinement.assertion.asserted_subgoal import goal_indices, start_indices
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, spec_of
+from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
@@ -29,10 +30,12 @@ def check_package(name: str) -> Domain:
     """Load a domain whose package holds together.
 
     Raises:
-      UsageError: There is no such domain, a part cannot be loaded, or parts do not match; all faults in one line.
+      UsageError: There is no such domain, a part cannot be loaded, or parts do not match; all faults in one line. Or
+        code of the package raises while it is asked, e.g. for its first belief.
     """
     spec, domain = spec_of(name), domains.load(name)
-    faults = list(faults_of_package(spec, domain))
+    with blamed_on_package(spec, f"the package of {name} cannot be checked"):
+        faults = list(faults_of_package(spec, domain))
     if faults:
         raise UsageError(f"the package of {name} does not hold together: {'; '.join(faults)}")
     return domain

@@ -259,3 +259,17 @@ def test_the_executive_reads_the_scenarios_of_a_checked_package_only(monkeypatch
     monkeypatch.setattr(domains, "scenarios", lambda _: sorted(["last", 2]))
     assert main(["executive", "soccer"]) == 2
     assert "order is 'last'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("method", ["initial_belief", "kept"])
+def test_code_that_raises_while_it_is_asked_is_named_in_one_line(method, monkeypatch):
+    def breaks(*_):
+        raise KeyError("wheel")
+
+    spec, domain = dataclasses.replace(spec_of("soccer"), package="tailor_cart"), without(method)
+    setattr(domain, method, breaks)
+    monkeypatch.setattr(package_check, "spec_of", lambda name: spec)
+    monkeypatch.setattr(domains, "load", lambda name: domain)
+    fault = r"^the package of soccer cannot be checked: KeyError: 'wheel' \(test_package_check.py, line \d+\)$"
+    with pytest.raises(UsageError, match=fault):
+        check_package("soccer")
