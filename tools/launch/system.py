@@ -19,12 +19,13 @@ from tailor.runtime.recordings.new_file import check_new_file
 from tailor.runtime.stopping import Stop
 from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
-from tailor.schemas.reason_text import reason_text, result_text
+from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.launch.arming_advice import hardware_line
 from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
+from tailor.tools.launch.once import OnceWatch
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
     LaunchConfig,
@@ -86,7 +87,8 @@ class _System:
         self._reports = ProcessReports(session.publisher("processes", self._robot), self._senders, screen)
         self._recording = RecordingWatch(config.require_recording, screen.report)
         self._folder = RunFolderWatch(config.bus.endpoint)
-        self._result = self._stopped = self._reported = ""
+        self._once = OnceWatch(config, supervisor.starts)
+        self._result = self._reported = ""
 
     def run(self) -> str:
         """Start process after process, each once the one before is ready; then supervise them."""
@@ -121,14 +123,10 @@ class _System:
             period = loop.wait_for_next_period()
             self._receive()
             self._poll(period.now_ns)
-            ended = self._ended() or (self._config.once and (self._result or self._stopped or self._restarted()))
+            ended = self._ended() or (self._config.once and (self._result or self._once.failure()))
             if ended:
                 return ended
         return self._result
-
-    def _restarted(self) -> str:
-        """Failure if the executive was started again, or "": nobody sets it a goal, and nothing moves any more."""
-        return "failed: the executive was started again" if self._supervisor.starts("executive") > 1 else ""
 
     def _receive(self) -> None:
         """Take in what the own children publish; messages of strangers do not count."""
@@ -136,7 +134,7 @@ class _System:
             message = sample.message
             if isinstance(message, DriverState):
                 if self._senders.sent(sample, self._config.driver):
-                    self._stopped = _stopped(message)
+                    self._once.hear(message)
                     self._report_hardware(message)
             elif self._senders.sent(sample, "executive"):
                 self._screen.show(message)
@@ -174,10 +172,3 @@ class _System:
         return self._recording.failure(
             self._supervisor.state("record") is State.ENDED, self._supervisor.status("record")
         )
-
-
-def _stopped(driver: DriverState) -> str:
-    """Failure if the driver has stopped until it is armed again, or ""."""
-    if driver.mode not in ("stopped", "estopped"):
-        return ""
-    return f"failed: the driver is {driver.mode}: {reason_text(driver.reason, driver.detail)}"

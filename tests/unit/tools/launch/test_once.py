@@ -1,0 +1,61 @@
+"""What ends `tailor up --once` besides a result."""
+
+from collections import Counter
+
+import pytest
+
+from tailor.executive.composition import ExecutiveConfig
+from tailor.schemas.messages import DriverState
+from tailor.tools.cli.systems.bus_settings import BusSettings
+from tailor.tools.launch.once import OnceWatch
+from tailor.tools.launch.processes import LaunchConfig
+
+
+class Run:
+    def __init__(self, hardware=""):
+        config = LaunchConfig(ExecutiveConfig("soccer", "approach"), BusSettings(), once=True, hardware=hardware)
+        self.driver, self.starts = config.driver, Counter({"executive": 1, config.driver: 1})
+        self.watch = OnceWatch(config, self.starts.__getitem__)
+
+    def restart(self, name):
+        self.starts[name] += 1
+
+    def hear(self, mode, reason=""):
+        self.watch.hear(DriverState(0, mode, reason, "", 7, "", 0))
+
+
+@pytest.mark.parametrize("hardware", ["", "robot.toml"])
+@pytest.mark.parametrize("mode", ["stopped", "estopped"])
+def test_a_stop_ends_the_run_unless_people_arm_the_robot_again_before_it_was_noticed(hardware, mode):
+    run = Run(hardware)
+    run.hear("armed")
+    assert run.watch.failure() == ""
+    run.hear(mode, "e-stop")
+    assert run.watch.failure() == f"failed: the driver is {mode}: e-stop"
+    run.hear("armed")
+    assert run.watch.failure() == ""
+
+
+@pytest.mark.parametrize("hardware", ["", "robot.toml"])
+def test_an_executive_that_was_started_again_ends_the_run(hardware):
+    run = Run(hardware)
+    run.restart("executive")
+    assert run.watch.failure() == "failed: the executive was started again"
+
+
+def test_a_simulator_that_was_started_again_ends_the_run_armed_or_not():
+    run = Run()
+    run.restart(run.driver)
+    assert run.watch.failure() == "failed: the driver was started again"
+
+
+def test_a_driver_of_hardware_that_was_started_again_ends_the_run_once_people_had_armed_it():
+    run = Run("robot.toml")
+    run.hear("disarmed", "just started")
+    run.restart(run.driver)
+    assert run.watch.failure() == "", "people have not armed it yet"
+    run.hear("armed")
+    assert run.watch.failure() == ""
+    run.restart(run.driver)
+    run.hear("disarmed", "just started")
+    assert run.watch.failure() == "failed: the driver was started again"
