@@ -41,7 +41,7 @@ class Settings:
       step_limit: Maximum number of steps in a plan.
       engine: Partial-order search ("pocl"), search through states ("forward": no durations, disjunctions or
         conditional effects), or both by turns ("auto").
-      ground_limit: Maximum number of steps of grounding (formulas over objects); the default takes half a second.
+      ground_limit: Maximum number of steps of grounding (formulas over objects); the default takes a third of a second.
       tolerance_s: Least time between dependent events of a durative plan (one tick), in [1e-6, 1000] s.
       seed: Random seed, at least 0.
       random_open_conditions: Open an action's conditions in random order.

@@ -20,7 +20,7 @@ from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, Disjunction, conjuncts
-from tailor.executive.planning.structures.orderings import FIRST
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP
 
 CostOf = OneOf["unit", "duration", "relative", "metric"]
 
@@ -42,6 +42,13 @@ class GroundTask:
     simple: bool  # no action has conditional effects
     first_node: int  # node of the first step, after the initial state, the goal and the timed literals
     moments: int  # nodes of a step: start and end, or only one if actions take no time
+
+    def step_of(self, node: int) -> int:
+        """The step that a node belongs to: 0 for the initial state and timed literals, GOAL_STEP for the goal."""
+        if node == GOAL:
+            return GOAL_STEP
+        beyond = node - self.first_node
+        return 1 + beyond // self.moments if beyond >= 0 else 0
 
     def has_alternatives_over_all(self) -> bool:
         """Whether an action has a condition over all with alternatives, of which any may hold at any time.

@@ -11,7 +11,7 @@ from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
 from tailor.executive.planning.ground_plans.events import events_of
-from tailor.executive.planning.ground_plans.partial_plan import PartialPlan, step_of
+from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.ground_plans.separation import Schedule, separated
 from tailor.executive.planning.pddl.language import Action, And, Literal
 from tailor.executive.planning.pddl.problem import Problem
@@ -117,7 +117,7 @@ def _links(plan: PartialPlan, task: GroundTask, world: StaticWorld, steps: tuple
     links_by_consumer: dict[int, list[Link]] = {}
     cell = plan.links
     while cell is not None:
-        link = Link(step_of(task, cell.producer), task.names[cell.literal], step_of(task, cell.first))
+        link = Link(task.step_of(cell.producer), task.names[cell.literal], task.step_of(cell.first))
         if link not in links_by_consumer.setdefault(link.consumer, []):
             links_by_consumer[link.consumer].append(link)
         cell = cell.rest

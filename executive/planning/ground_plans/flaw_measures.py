@@ -36,11 +36,12 @@ class GroundFlawMeasures:
     def is_unsafe(self, plan: PartialPlan, condition: OpenCondition) -> bool:
         """See `FlawMeasures`; as for VHPOP 2.2.1, also by a step that restores at once what it deletes."""
         part, earlier = condition.condition, ~plan.orderings.late[condition.last] & ~(1 << condition.first)
+        masks, restored = plan.effects.masks(), self._restored(plan.steps)
+        if isinstance(part, int):  # nearly all
+            return bool((masks[part ^ 1] | restored.get(part ^ 1, 0)) & earlier)
         if isinstance(part, Disjunction):
             return False
-        masks, restored = plan.effects.masks(), self._restored(plan.steps)
-        undoing = (part ^ 1,) if isinstance(part, int) else [literal ^ 1 for literal in literals_of(part)]
-        return any((masks[literal] | restored.get(literal, 0)) & earlier for literal in undoing)
+        return any((masks[literal ^ 1] | restored.get(literal ^ 1, 0)) & earlier for literal in literals_of(part))
 
     def _restored(self, steps: tuple[GroundAction, ...]) -> dict[int, int]:
         """By literal the mask of the nodes at which a step makes it true, and false again at once.

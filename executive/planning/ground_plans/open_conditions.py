@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.new_steps import new_step_plans, opened_by
-from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, new, step_of
+from tailor.executive.planning.ground_plans.partial_plan import Link, OpenCondition, PartialPlan, new
 from tailor.executive.planning.ground_plans.threat_detection import Spanned, threats_to
 from tailor.executive.planning.structures.connectives import Conjunction, Disjunction
 from tailor.executive.planning.structures.linked_list import without
@@ -81,7 +81,7 @@ def _by_old_step(
     orderings = plan.orderings if node == flaw.first else plan.orderings.ordered(node, flaw.first)
     if orderings is None:
         return []
-    step = step_of(task, node)
+    step = task.step_of(node)
     if step == 0 or plan.steps[step - 1].simple:
         return [_linked(task, plan, flaw, literal, node, orderings)]
     start = task.first_node + (step - 1) * task.moments

@@ -11,7 +11,7 @@ from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.step_effects import StepEffects, no_masks
-from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP, Closure, Orderings
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 new = tuple.__new__  # makes a named tuple from a plain one in half the time of its constructor
@@ -63,14 +63,6 @@ class PartialPlan(NamedTuple):
     open_count: int
     threat_count: int
     cost: float
-
-
-def step_of(task: GroundTask, node: int) -> int:
-    """The step that a node belongs to: 0 for the initial state and timed literals, GOAL_STEP for the goal."""
-    if node == GOAL:
-        return GOAL_STEP
-    beyond = node - task.first_node
-    return 1 + beyond // task.moments if beyond >= 0 else 0
 
 
 def initial_plan(task: GroundTask) -> PartialPlan:

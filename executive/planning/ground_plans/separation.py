@@ -124,7 +124,8 @@ class _Separation:
             try:
                 next(work)
             except StopIteration as ended:
-                return ended.value == ""
+                fault: str = ended.value
+                return not fault
         return False
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
-from tailor.executive.planning.ground_plans.partial_plan import Link, Threat, new, step_of
+from tailor.executive.planning.ground_plans.partial_plan import Link, Threat, new
 from tailor.executive.planning.structures.orderings import Orderings
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
@@ -71,7 +71,7 @@ def threats_to(
 
 def _deletions_at(task: GroundTask, steps: tuple[GroundAction, ...], node: int, literal: int) -> tuple[Spanned, ...]:
     """The conditions under which a node, of a step or of a timed literal, makes a literal true."""
-    step = step_of(task, node)
+    step = task.step_of(node)
     return _deletions(steps[step - 1], literal, (node - task.first_node) % task.moments) if step else _ALWAYS
 
 

@@ -63,10 +63,8 @@ class LiftedTask:
         return self.ground.moments
 
     def step_of(self, node: int) -> int:
-        """The step of a node: 0 is the initial state, -1 the goal."""
-        if node < self.first_node:
-            return -1 if node == 1 else 0
-        return 1 + (node - self.first_node) // self.moments
+        """As of the ground task."""
+        return self.ground.step_of(node)
 
     def node_of(self, step: int) -> int:
         """The first node of a step."""
