@@ -55,7 +55,7 @@ def test_costs_of_one_robot_are_compared_over_all_pairs_also_failed_ones() -> No
 def test_a_disturbed_scenario_is_evaluated_with_its_disturbance(monkeypatch) -> None:
     worlds, limits_s = [], []
 
-    def run(_, world, *, limit_s):
+    def run(_, world, *, limit_s, **_given):
         worlds.append(world)
         limits_s.append(limit_s)
         return Run()
