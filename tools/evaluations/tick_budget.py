@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Callable
+from functools import partial
 
 from tailor.executive.interfaces.budget import Budget
-from tailor.runtime.budget import ClockBudget
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import finite
-from tailor.tools.lockstep.run import CHECKS_PER_TICK, DELIBERATION
+from tailor.tools.lockstep.run import CHECKS_PER_TICK, DELIBERATION, cpu_budget
 
 MAX_MS = 10_000.0
 
@@ -26,8 +25,7 @@ def tick_budget(tick_ms: float) -> Callable[[], Budget]:
     """Makes the budget of each tick: `tick_ms` of this thread's CPU time; of 0 CHECKS_PER_TICK checks."""
     if not tick_ms:
         return DELIBERATION
-    limit_ns = round(1e6 * tick_ms)
-    return lambda: ClockBudget(time.thread_time_ns() + limit_ns, time.thread_time_ns)
+    return partial(cpu_budget, round(1e6 * tick_ms))
 
 
 def budget_remark(tick_ms: float) -> list[str]:

@@ -6,6 +6,7 @@ Core, driver and guard are the same as in a live run over the bus.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,6 +16,7 @@ from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import PERIOD_NS, Context
 from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.replay import RecordedTick
+from tailor.runtime.budget import ClockBudget
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals
 from tailor.simnodes.world import World
 from tailor.tools.lockstep.driver_link import DriverLink, Transport
@@ -48,6 +50,11 @@ class Run:
     def duration_s(self) -> float:
         """From the start of the first action to the end of the last one; the paper's t of an episode."""
         return self.ended_s - self.started_s
+
+
+def cpu_budget(limit_ns: int) -> Budget:
+    """The budget of a tick that begins now: so much CPU time of this thread, as live; a run does not repeat exactly."""
+    return ClockBudget(time.thread_time_ns() + limit_ns, time.thread_time_ns)
 
 
 def run_lockstep(

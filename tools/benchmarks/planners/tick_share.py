@@ -11,6 +11,7 @@ import gc
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -25,12 +26,11 @@ from tailor.executive.deliberation.plan_reuse import Preparation
 from tailor.executive.deliberation.plan_source import PlanSource
 from tailor.executive.replay import RecordedTick
 from tailor.executive.shell import DELIBERATION_NS
-from tailor.runtime.budget import ClockBudget
 from tailor.runtime.gc_freeze import gc_disabled
 from tailor.runtime.realtime import collect_garbage
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
-from tailor.tools.lockstep.run import SENDER, run_lockstep
+from tailor.tools.lockstep.run import SENDER, cpu_budget, run_lockstep
 from tailor.tools.lockstep.worlds import make_world
 
 SECONDS, QUICK_SECONDS = 60.0, 8.0
@@ -55,7 +55,7 @@ def _shares(domain: str, scenario: str, seconds: float) -> list[float]:
     with _timed(PlanSource, "advance") as searched, _timed(Preparation, "advance") as prepared:
         run_lockstep(
             context, world, limit_s=seconds, on_tick=on_tick,
-            new_budget=lambda: ClockBudget(time.process_time_ns() + DELIBERATION_NS, time.process_time_ns),
+            new_budget=partial(cpu_budget, DELIBERATION_NS),
         )  # fmt: skip
     return [100.0 * float(ns) / PERIOD_NS for ns in np.diff(marks)]
 
