@@ -18,7 +18,7 @@ COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#1
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
 SCALE_MPS = 0.5
 LABELLED = len(COLOURS)  # actions in the legend; a run that fails may repeat its last one many times
-PANEL_IN, HIGHEST_IN, FRAME_IN = 4.4, 6.4, 1.7  # width of a field, its greatest height, and what title and legend take
+PANEL_IN, HIGHEST_IN, FRAME_IN = 4.4, 6.4, 2.0  # width of a field, its greatest height, and what title and legend take
 LEGEND_IN = 0.5  # from an axis down to its legend: ticks and name of the axis lie between, however flat it is
 
 
