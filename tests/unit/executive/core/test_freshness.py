@@ -13,6 +13,7 @@ from tailor.executive.core.step import step
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import ActionFinished, Odometry, Sample
+from tailor.schemas.topics import TOPICS
 from tests.support.toy_domain import LineDomain, driver, line_context, odometry
 from tests.unit.executive.core.test_core import GOAL, TICK, drive, messages
 
@@ -144,12 +145,14 @@ def test_a_second_sender_of_a_sensor_counts_only_once_the_first_is_silent():
 def test_a_second_sender_of_a_sensor_without_a_limit_counts_once_the_first_is_silent_for_a_second():
     """What a second simulator's camera sees is not where the robot stands; a camera that was restarted is believed."""
 
+    assert TOPICS["opponents"].fresh_s is None
+
     class Seeing(LineDomain):
-        sensors = ("odom", "objects")
+        sensors = ("odom", "opponents")
 
     def world(n, given, x):
         first, second = (
-            Sample("agilo/objects", Odometry(n * TICK, at, 0.0, 0.0, 0.0, 0.0), n * TICK, n, sender * 16)
+            Sample("agilo/opponents", Odometry(n * TICK, at, 0.0, 0.0, 0.0, 0.0), n * TICK, n, sender * 16)
             for at, sender in ((x, "cd"), (5.0, "ef"))
         )
         samples = (first,) if n == 1 else (first, second) if n <= 60 else (second,)
