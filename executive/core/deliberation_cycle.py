@@ -12,6 +12,7 @@ from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Deliberation
+from tailor.executive.deliberation.next_choice import NextChoice
 from tailor.executive.deliberation.plan_reuse import Preparation, reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
@@ -42,7 +43,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     state = _with_deliberation(context, state)
     deliberation = state.deliberation
     if deliberation is None:
-        return _prepared(context, state, budget)
+        return _with_rest_used(context, state, budget)
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
@@ -55,7 +56,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     if decision is not None:
         state = adopted(context, state, decision, deliberation.stage == "decided")
     if deliberation.stage == "decided":
-        state = _prepared(context, state, budget)
+        state = _with_rest_used(context, _with_next_choice(context, state, deliberation), budget)
         deliberation.certify(budget)  # what is left of the budget
     return state
 
@@ -78,7 +79,9 @@ def _with_deliberation(context: Context, state: State) -> State:
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
-    deliberation = Deliberation(context, state.belief, state.now_ns, number, source)
+    known = state.next_choice if idle else None
+    start = known.values() if known is not None and known.decision.plan is task.plan else {}
+    deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 
@@ -107,14 +110,43 @@ def _with_failure(state: State, cause: Cause | None) -> State:
     return replace(state, task=task)
 
 
-def _prepared(context: Context, state: State, budget: Budget) -> State:
-    """While an action runs and nothing is to be decided: prepare the plan after the action, search a better one."""
+def _with_next_choice(context: Context, state: State, deliberation: Deliberation) -> State:
+    """After a decision that took several ticks: the search for the choice after the running action.
+
+    Where one tick is enough, the next decision will not need it.
+    """
+    decision, known = state.task.decision, state.next_choice
+    if decision is None or state.task.running is None or deliberation.ticks == 1:
+        return state
+    if known is not None and known.decision is decision:
+        return state
+    return replace(state, next_choice=NextChoice(context, decision))
+
+
+def _with_rest_used(context: Context, state: State, budget: Budget) -> State:
+    """While an action runs and nothing is to be decided: prepare what follows it, then search a better plan."""
+    if state.task.running is None:
+        return state
+    preparation, coming = _preparation(context, state), state.next_choice
+    if preparation is not None:
+        state = replace(state, preparation=preparation)
+        if not preparation.advance_suffix(budget):
+            return state
+    if coming is not None and coming.decision is state.task.decision:
+        coming.advance(budget)
+    if preparation is not None:
+        preparation.advance(budget)
+    return state
+
+
+def _preparation(context: Context, state: State) -> Preparation | None:
+    """That of the plan after the running action, anew where observed facts have changed; None if it ends no step."""
     task, running = state.task, state.task.running
     if running is None or running.asserted or task.plan is None:
-        return state
+        return None
     action = task.plan.action_of(running.step)
     if action is None:
-        return state
+        return None
     facts = context.domain.anchor(state.belief, context.scenario, task.facts)
     preparation = state.preparation
     if preparation is None or not preparation.follows(task.plan, running.step, facts):
@@ -123,5 +155,4 @@ def _prepared(context: Context, state: State, budget: Budget) -> State:
             place = (task.plan, running.step, task.done)
             preparation = Preparation(context, *place, expected, task.goal, state.ground)
         preparation.note(facts)
-    preparation.advance(budget)
-    return replace(state, preparation=preparation)
+    return preparation

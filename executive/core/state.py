@@ -11,6 +11,7 @@ from tailor.executive.core.sensing.measurements import Measurements, Speeds, fas
 from tailor.executive.core.sensing.streams import Stream
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
+from tailor.executive.deliberation.next_choice import NextChoice
 from tailor.executive.deliberation.plan_reuse import Preparation
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Result
@@ -78,8 +79,8 @@ class Task:
 class State:
     """The executive between two ticks.
 
-    A step consumes it: `deliberation` and `preparation` are resumed in place, and the cache `ground` grows. Each state
-    is used for one step only.
+    A step consumes it: `deliberation`, `preparation` and `next_choice` are resumed in place, and the cache `ground`
+    grows. Each state is used for one step only.
     """
 
     belief: Belief
@@ -99,6 +100,7 @@ class State:
     coasted: int = 0  # ticks since the last action ended
     deliberation: Deliberation | None = None
     preparation: Preparation | None = None
+    next_choice: NextChoice | None = None  # of the last decision that took several ticks
     ground: GroundCache = field(default_factory=GroundCache)
     carried: bool = False  # in this tick the belief found that the robot was moved by others
     halted_until_ns: int = 0  # until then the robot brakes, and nothing is decided
@@ -109,7 +111,7 @@ def undecided(state: State) -> State:
     """The state with its goal only: what comes next is planned and decided from where the robot stands then."""
     finished = state.task.finished + (state.task.running is not None)
     task = replace(state.task, running=None, decision=None, plan=None, finished=finished)
-    return replace(state, task=task, deliberation=None, preparation=None)
+    return replace(state, task=task, deliberation=None, preparation=None, next_choice=None)
 
 
 def initial_state(context: Context) -> State:

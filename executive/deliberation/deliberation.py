@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -42,7 +43,15 @@ class Decision:
 class Deliberation:
     """Decision making from one snapshot of the belief; owned by one state, changed in place."""
 
-    def __init__(self, context: Context, belief: Belief, now_ns: int, number: int, source: PlanSource) -> None:
+    def __init__(
+        self,
+        context: Context,
+        belief: Belief,
+        now_ns: int,
+        number: int,
+        source: PlanSource,
+        start: Mapping[tuple[str, str], float] | None = None,
+    ) -> None:
         """Prepare a deliberation; all work is done in `advance`.
 
         Args:
@@ -51,8 +60,10 @@ class Deliberation:
           now_ns: Time of the belief.
           number: Serial number of this deliberation; with the seed it fixes every random draw.
           source: Source of its plan.
+          start: Values by label and quantity with which refinement begins, if it finds none that are better at once.
         """
         self.number = number
+        self.ticks = 0  # that it has taken
         self.stage: Stage = "planning"
         self.failure: Cause | None = None
         self.source = source
@@ -62,6 +73,7 @@ class Deliberation:
         self._context = context
         self._belief = belief
         self._now_ns = now_ns
+        self._start = start or {}
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
         self._found: PlanFound | None = None  # whose plan is being compared
         self._plan_choice: PlanChoice | None = None  # between the source's plan and others
@@ -78,6 +90,7 @@ class Deliberation:
     def advance(self, budget: Budget) -> None:
         """Continue until decided, failed, or out of budget."""
         stages = {"planning": self._plan, "asserting": self._assert, "refining": self._refine}
+        self.ticks += self.stage in stages
         while self.stage in stages:
             stage = self.stage
             stages[stage](budget)
@@ -177,7 +190,11 @@ class Deliberation:
         self.sequence = sequence
         self._watch = BeliefMonitor(self._pattern, sequence)
         self.refinement = Refinement(
-            sequence, self._context.models, self._context.settings.refinement, self._rng, start=None
+            sequence,
+            self._context.models,
+            self._context.settings.refinement,
+            self._rng,
+            sequence.values_of(self._start),
         )
         self.stage = "refining"
 

@@ -69,9 +69,13 @@ class Preparation:
         """Whether this is for that step of that plan, started in the abstract state last noted."""
         return self._plan is plan and self._step == step and self._facts == facts
 
+    def advance_suffix(self, budget: Budget) -> bool:
+        """Continue with the suffix alone; whether it is ready."""
+        return self._suffix.advance(budget)
+
     def advance(self, budget: Budget) -> None:
         """Continue until all is done or the budget is spent."""
-        if not self._suffix.advance(budget) or self._search is None:
+        if not self.advance_suffix(budget) or self._search is None:
             return
         if isinstance(self._search, planning.AnytimeSearch):
             while self._search.advance(budget) is not None:  # each plan is better than the one before

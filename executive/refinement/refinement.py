@@ -48,7 +48,8 @@ class Refinement:
       models: Loaded models.
       settings: Horizon, objective and solver.
       rng: The only source of randomness.
-      start: Values by variable id of an earlier answer, as an initial candidate.
+      start: Values by variable id of an earlier answer: taken at once where they are better than the first greedy
+        answer by enough, and an initial candidate.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class Refinement:
         self._models = models
         self._settings = settings
         self._rng = rng
-        self._start = start
+        self._start = start or {}
         terms = (sequence.within(settings.horizon), sequence.variables, models, settings)
         self._objective = SequenceObjective(*terms)
         self._reporting = SequenceObjective(*terms)  # its evaluations do not count as the search's
@@ -163,6 +164,10 @@ class Refinement:
         self._choice = self._greedy_choice = choice_of(self._reporting, self._objective.vector(values))
         if not self._objective.ids:
             return
+        if self._start:
+            self._start = {**values, **self._start}
+            self._required_s = required_gain_s(self._greedy_choice, self._settings)
+            self._adopt(choice_of(self._reporting, self._objective.vector(self._start)))
         if self._settings.gain_k_std > 0 and len(self._sequence.units()[: self._settings.horizon]) > 1:
             terms = (self._sequence, self._models, self._settings, self._rng)
             self._greedy_search = GreedySearch(*terms, start=values)
@@ -179,7 +184,7 @@ class Refinement:
         self._begin_solver(values)
 
     def _begin_solver(self, values: Mapping[int, float]) -> None:
-        starts = [values] if self._start is None else [values, self._start]
+        starts = [values, self._start] if self._start else [values]
         seeds = self._objective.vectors([*starts, *self._sequence.starts])
         self._solver = solver_for(self._objective, self._settings, self._rng, seeds)
 

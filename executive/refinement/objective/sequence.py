@@ -77,6 +77,11 @@ class ActionSequence:
         """Free variables, by id."""
         return tuple(variable for variable in self.variables if variable.free)
 
+    def values_of(self, known: Mapping[tuple[str, str], float]) -> dict[int, float]:
+        """Known values of the free variables, by id, from values by label and quantity; none that are out of range."""
+        found = {v.id: known[v.label, v.quantity] for v in self.free() if (v.label, v.quantity) in known}
+        return {i: value for i, value in found.items() if self.variables[i].lower <= value <= self.variables[i].upper}
+
     def bind(self, values: Mapping[int, float]) -> ActionSequence:
         """The sequence with the free variables in `values` (by id) fixed; bound ones are unchanged."""
         variables = tuple(

@@ -49,10 +49,11 @@ def _shares(domain: str, scenario: str, seconds: float) -> list[float]:
     marks = [0]
 
     def on_tick(tick: RecordedTick, outputs: tuple[Output, ...]) -> None:
-        marks.append(searched[0] + prepared[0])
+        marks.append(searched[0] + shortened[0] + improved[0])
         collect_garbage(tick.tick)
 
-    with _timed(PlanSource, "advance") as searched, _timed(Preparation, "advance") as prepared:
+    suffix, better = _timed(Preparation, "advance_suffix"), _timed(Preparation, "advance")
+    with _timed(PlanSource, "advance") as searched, suffix as shortened, better as improved:
         run_lockstep(
             context, world, limit_s=seconds, on_tick=on_tick,
             new_budget=partial(cpu_budget, DELIBERATION_NS),
