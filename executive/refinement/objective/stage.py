@@ -5,13 +5,15 @@ INVALID (Algorithm 4) is decided here: failure too probable, or a prediction tha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.executive.interfaces.action import Parameter
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.arrivals import displacements
@@ -71,8 +73,7 @@ class Stage:
         self.sources = np.searchsorted(self.columns, [columns[i] for i in ids if i in columns])
         self._displaced = np.array([j for j, i in enumerate(ids) if i in displaced_ids], dtype=np.intp)
         parameters = [instance.action.parameters[j] for j in self._displaced]
-        quantities = [parameter.quantity for parameter in parameters]
-        self._displacements = displacements(quantities, dict(settings.arrival_spread))
+        self._displacements = _displacements(parameters, settings)
         self._clipped = np.array([k for k, parameter in enumerate(parameters) if not parameter.periodic], dtype=np.intp)
         self._lower = np.array([parameters[k].lower for k in self._clipped])
         self._upper = np.array([parameters[k].upper for k in self._clipped])
@@ -160,6 +161,17 @@ def context_cost_s(instance: InstantiatedAction, settings: RefinementSettings) -
     if context is None or settings.risk_cost_s == 0:
         return 0.0
     return max(settings.risk_cost_s, context.failure_cost_s)
+
+
+def _displacements(parameters: Sequence[Parameter], settings: RefinementSettings) -> Array:
+    """Displacements on arrival; those of an angle are the same arrivals within half a period.
+
+    A proof distinguishes each half turn that the arrivals of a box may lie in: of a spread without limit, millions.
+    """
+    points = displacements([parameter.quantity for parameter in parameters], dict(settings.arrival_spread))
+    for column, parameter in enumerate(parameters):
+        points[:, column] = [math.remainder(point, parameter.period) for point in points[:, column]]
+    return points
 
 
 def _mean(values: Array, arrivals: int) -> Array:

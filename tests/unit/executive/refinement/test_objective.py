@@ -128,6 +128,16 @@ def test_displacements_have_mean_zero_and_the_requested_covariance(count):
     np.testing.assert_allclose(covariance, np.diag([std[q] ** 2 for q in quantities[:-1]] + [0]), atol=1e-12)
 
 
+@pytest.mark.parametrize("spread", [0.2, 20.0, 1e6])
+def test_arrivals_lie_within_half_a_turn_of_an_angle_however_wide_they_spread(spread):
+    dribble = objective(exact(arrival_spread=(("phi", spread),))).stages[1]
+    off = dribble.parameters(CANDIDATES[:1])[:, 2] - CANDIDATES[0, 0]
+    asked = spread * np.sqrt(1.5) * np.array([0.0, 1.0, -1.0])
+    assert (np.abs(off) <= np.pi + 1e-9).all()
+    np.testing.assert_allclose(np.cos(off), np.cos(asked), atol=1e-6)
+    np.testing.assert_allclose(np.sin(off), np.sin(asked), atol=1e-6)
+
+
 def test_settings_out_of_range_are_refused_by_name():
     for wrong in ({"horizon": 0}, {"k_std": -1.0}, {"p_fail_max": 1.5}, {"batch": 0}, {"risk_cost_s": float("nan")}):
         with pytest.raises(UsageError, match=next(iter(wrong))):
