@@ -11,6 +11,8 @@ import math
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
+MAX_STD_S = 1e100  # of which the square is still a number, whatever a model predicts
+
 
 def required_gain_s(greedy: Choice, settings: RefinementSettings) -> float:
     """The predicted gain in seconds from which another choice is taken instead of the greedy one.
@@ -20,4 +22,5 @@ def required_gain_s(greedy: Choice, settings: RefinementSettings) -> float:
     """
     if not greedy.valid:
         return 0.0
-    return settings.gain_min_s + settings.gain_k_std * math.sqrt(2 * sum(std_s**2 for std_s in greedy.std_s))
+    stds_s = [min(std_s, MAX_STD_S) for std_s in greedy.std_s]
+    return settings.gain_min_s + settings.gain_k_std * math.sqrt(2 * sum(std_s**2 for std_s in stds_s))
