@@ -16,7 +16,7 @@ from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
-from tailor.executive.refinement.assertion.subgoal_comparison import has_limit, with_any_risk
+from tailor.executive.refinement.assertion.relaxed_limits import relaxed
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
 from tailor.executive.refinement.instantiation import MAX_ACTIONS, Pattern
 from tailor.executive.refinement.objective.choice import Choice
@@ -200,14 +200,15 @@ class Deliberation:
 
     def _refine(self, budget: Budget) -> None:
         assert self.refinement is not None
+        assert self.sequence is not None
         self.refinement.advance(budget)
         if not self.refinement.finished:
             return
         choice = self.refinement.choice
         if choice is not None and choice.valid:
             self.stage = "decided"
-        elif self.sequence is not None and has_limit(self.sequence):
-            self._begin_refinement(with_any_risk(self.sequence))
+        elif (sequence := relaxed(self.sequence, self._context.settings.refinement)) is not None:
+            self._begin_refinement(sequence)
         else:
             self._fail(Cause(Reason.NO_VALID_CHOICE))
 
