@@ -134,6 +134,8 @@ def _paused(state: State, passed_ns: int) -> State:
     running = state.task.running
     if state.mode is not Mode.HOLDING or running is None:
         return state
+    if state.deliberation is not None:
+        state.deliberation.pause(passed_ns)
     return replace(state, task=replace(state.task, running=replace(running, started_ns=running.started_ns + passed_ns)))
 
 

@@ -97,6 +97,10 @@ class Deliberation:
             if self.stage == stage:
                 return
 
+    def pause(self, passed_ns: int) -> None:
+        """Let time pass in which the clock of the running action stands still: predictions count from that clock."""
+        self._now_ns += passed_ns
+
     def certify(self, budget: Budget) -> None:
         """Once decided, tighten the bound of the optimality gap: the choice against the optimum of the models."""
         if self.stage == "decided" and self.refinement is not None:

@@ -44,7 +44,7 @@ def drive(context, goal=GOAL, ticks=100, checks=200, world=None):
         given = inputs(n * TICK, x, goal if n == 1 else "")
         if world is not None:
             given = world(n, given, x)
-        state, outputs = step(context, state, n * TICK, given, CheckBudget(checks))
+        state, outputs = step(context, state, n * TICK, given, CheckBudget(checks(n) if callable(checks) else checks))
         x += 0.1 * state.command[0]
         yield state, outputs, x
 
@@ -200,6 +200,22 @@ def test_predictions_of_a_redirected_action_do_not_count_the_ticks_that_its_deci
     (finished,) = messages(run, ActionFinished)
     assert len(messages(run, Subgoals)) == 2
     assert finished.predicted_s == pytest.approx(finished.actual_s)
+
+
+def test_nor_do_they_count_the_time_in_which_the_executive_held_before_it_decided():
+    places = {"home": {"x": 0.0}, "a": {"x": 2.0}, "b": {"x": 1.0}}
+
+    def world(n, given, x):
+        seen = (odometry(n * TICK, x, n, 0.3 if n >= 20 else 0.0),) if not 22 <= n < 60 else ()
+        return Inputs((*seen, driver(n * TICK)), given.goal)
+
+    drives = drive(
+        line_context(places=places), "(visited a)", world=world, checks=lambda n: 200 if n < 20 or n > 60 else 0
+    )
+    run = list(drives)
+    (finished,) = messages(run, ActionFinished)
+    assert len(messages(run, Subgoals)) == 2
+    assert finished.predicted_s == pytest.approx(finished.actual_s, abs=0.3)
 
 
 @pytest.mark.promise("P11")
