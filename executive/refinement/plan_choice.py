@@ -7,6 +7,7 @@ misjudges actions that depend on each other: where a ball is best approached dep
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -55,7 +56,7 @@ class PlanScore:
         self._solver: Solver | None = None  # of all free parameters
 
     def advance(self, budget: Budget) -> float | None:
-        """Continue until the cost is known; None if the budget is spent first."""
+        """Continue until the cost is known, infinite if a prediction is not; None if the budget is spent first."""
         while not self._search.finished:
             if budget.spent():
                 return None
@@ -69,7 +70,8 @@ class PlanScore:
             return None
         predictions = self._objective.predict(greedy if self._solver.best is None else self._solver.best)
         k_std = self._settings.k_std
-        return float(sum(each.duration_s[0] + k_std * each.std_s[0] + each.failure_s[0] for each in predictions))
+        cost_s = float(sum(each.duration_s[0] + k_std * each.std_s[0] + each.failure_s[0] for each in predictions))
+        return cost_s if math.isfinite(cost_s) else math.inf  # nan is less than nothing, and nothing less than it
 
 
 class PlanChoice:

@@ -1,16 +1,19 @@
 """`plan_costs = "models"`: of several plans the one that the models predict to be executed fastest is executed."""
 
 import itertools
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.models import Models
 from tailor.executive.planning import Objects
 from tailor.executive.planning.semantics import large_formulas, state
 from tailor.executive.replay import replay
 from tailor.schemas.messages import ActionFinished, PlanReport
-from tests.support.toy_domain import line_context
+from tests.support.toy_domain import LineModel, line_context
 from tests.unit.executive.deliberation.test_improvement import drive, messages_of, steps, three_places
 
 PLACES = {"home": {"x": 0.0}, "a": {"x": 1.5}, "b": {"x": 0.5}, "c": {"x": 1.0}, "d": {"x": -0.3}}
@@ -49,6 +52,26 @@ def test_by_steps_any_tour_does():
     assert length(order) > min(map(length, itertools.permutations("abcd")))
     assert states[-1].task.result == "achieved"
     assert len(finished) == 4
+
+
+class Unknown(LineModel):
+    """Knows nothing of the way to one place from home."""
+
+    def __init__(self, x):
+        self.x = x
+
+    def predict(self, arguments):
+        mean, std = super().predict(arguments)
+        return np.where((arguments[:, 0] == 0.0) & (arguments[:, 1] == self.x), np.nan, mean), std
+
+
+def test_a_plan_of_which_the_models_know_nothing_is_not_the_fastest():
+    context = tour(plan_costs="models")
+    first = PLACES[driven(tour())[1][0]]["x"]
+    unknown = replace(context, models=Models({"slide/duration": Unknown(first)}, {}))
+    _, order, _, _ = driven(unknown)
+    known = [each for each in itertools.permutations("abcd") if PLACES[each[0]]["x"] != first]
+    assert length(order) == pytest.approx(min(map(length, known)))
 
 
 def test_the_choice_is_the_same_however_the_work_is_divided_and_is_replayed_bit_for_bit():
