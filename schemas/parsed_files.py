@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -60,9 +61,9 @@ def table_of(text: str) -> dict[str, Any] | Rejected:
 
 
 def shown(value: Any) -> str:
-    """Text of a value for an error message, at most 60 characters."""
+    """Text of a value for an error message: one line, at most 60 characters."""
     try:
-        text = repr(value)
+        text = re.sub(r"\n\s*", " ", repr(value))  # of an array
     except (ValueError, RecursionError):  # an integer of more digits than Python prints, or endless nesting
         return f"a value of type {type(value).__name__} that is too long to print"
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -11,6 +11,7 @@ from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.executive.interfaces.values import Fact
@@ -87,7 +88,7 @@ def _started(context: Context, state: State) -> State:
     if decision is None:
         return state
     step = decision.sequence.actions[0].step
-    facts = context.domain.anchor(state.belief, context.scenario, state.task.facts)
+    facts = anchored(context.domain, state.belief, context.scenario, state.task.facts)
     missing = _missing_support(decision.plan, step, facts)
     if missing is not None:
         return replace(state, task=replace(state.task, decision=None), deliberation=None)

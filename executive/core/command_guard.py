@@ -6,15 +6,13 @@ The driver's guard checks again; for independence the two share no code.
 from __future__ import annotations
 
 import math
-from numbers import Real
 from typing import Any, get_args
-
-import numpy as np
 
 from tailor.executive.interfaces.action import Action, Control, Outcome
 from tailor.executive.interfaces.domain import Axis, Domain
 from tailor.executive.interfaces.outlet import Command, at_rest, completed, driven_axes
 from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.interfaces.results import is_row_of_numbers
 from tailor.schemas.parsed_files import shown
 
 OUTCOMES = get_args(Outcome)
@@ -52,12 +50,6 @@ def fault_of_control(control: Any) -> str:
         return f"{shown(control)}, expected a Control (executive/interfaces/action.py)"
     if not isinstance(control.outcome, str) or control.outcome not in OUTCOMES:
         return f"the outcome {shown(control.outcome)}, expected one of: {', '.join(OUTCOMES)}"
-    if not _is_row_of_numbers(control.command):
+    if not is_row_of_numbers(control.command):
         return f"the command {shown(control.command)}, expected a tuple of numbers"
     return "" if isinstance(control.detail, str) else f"the detail {shown(control.detail)}, expected text"
-
-
-def _is_row_of_numbers(value: Any) -> bool:
-    if not isinstance(value, tuple | list | np.ndarray) or (isinstance(value, np.ndarray) and value.ndim != 1):
-        return False
-    return all(isinstance(each, Real) for each in value)

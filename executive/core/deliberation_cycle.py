@@ -16,6 +16,7 @@ from tailor.executive.deliberation.next_choice import NextChoice
 from tailor.executive.deliberation.plan_reuse import Preparation, reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.reasons import Cause, Result
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
@@ -76,7 +77,7 @@ def _with_deliberation(context: Context, state: State) -> State:
             return halted(context, state)
         if not (risen or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
             return shortened(context, state)
-    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
     known = state.next_choice if idle else None
@@ -147,7 +148,7 @@ def _preparation(context: Context, state: State) -> Preparation | None:
     action = task.plan.action_of(running.step)
     if action is None:
         return None
-    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     preparation = state.preparation
     if preparation is None or not preparation.follows(task.plan, running.step, facts):
         expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)

@@ -8,6 +8,7 @@ from tailor.executive import planning
 from tailor.executive.core.execution import Running
 from tailor.executive.core.state import State, Task
 from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 
@@ -32,7 +33,7 @@ def confirmed(context: Context, state: State, running: Running) -> State:
     action = planned_action(task.plan, running)
     if action is None:
         return state
-    facts = context.domain.anchor(state.belief, context.scenario, task.facts)
+    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     missing = missing_effects(context, facts, action)
     if not missing:
         others = tuple(each for each in task.unconfirmed if each != action)

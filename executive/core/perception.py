@@ -17,7 +17,7 @@ from tailor.executive.core.sensing.measurements import without_faulty
 from tailor.executive.core.sensing.streams import of_known_senders, slow_topics, with_samples
 from tailor.executive.core.state import Arming, Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context, drops_goal
-from tailor.executive.interfaces.domain import measurement_fault, relocations
+from tailor.executive.interfaces.domain_results import is_ready, measurement_fault, relocations, updated
 from tailor.executive.interfaces.outlet import staying
 from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.schemas.messages import DriverState, Sample
@@ -67,7 +67,7 @@ def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) 
     received = of_known_senders(domain.sensors, domain.robot, state.streams, samples)
     judge = partial(measurement_fault, domain, state.belief)
     measurements, readings = without_faulty(state.measurements, received, state.fastest, judge)
-    belief = domain.update(state.belief, state.now_ns, readings, state.command)
+    belief = updated(domain, state.belief, state.now_ns, readings, state.command)
     return replace(
         state,
         belief=belief,
@@ -156,7 +156,7 @@ def _hold(context: Context, state: State) -> Cause | None:
         return Cause(Reason.INPUT_STALE, ", ".join(map(_with_fault, stale, faults)))
     if (age_ns := state.arming.echo_age_ns) > MAX_ROUND_TRIP_NS:
         return Cause(Reason.ROUND_TRIP, f"{age_ns / 1e6:.0f} ms, limit {MAX_ROUND_TRIP_NS / 1e6:.0f} ms")
-    if not context.domain.ready(state.belief):
+    if not is_ready(context.domain, state.belief):
         return Cause(Reason.BELIEF_NOT_READY)
     if state.task.running is None and (slow := slow_inputs(context, state)) is not None:
         return slow

@@ -13,6 +13,7 @@ from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
 from tailor.executive.deliberation.next_choice import NextChoice
 from tailor.executive.deliberation.plan_reuse import Preparation
+from tailor.executive.interfaces.domain_results import first_belief
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Result
 from tailor.executive.interfaces.values import Belief, Fact
@@ -117,4 +118,4 @@ def undecided(state: State) -> State:
 def initial_state(context: Context) -> State:
     """State before the first tick: no goal, no percepts, a zero command."""
     domain, arming = context.domain, Arming(driver_sender=context.driver_sender)
-    return State(domain.initial_belief(), at_rest(domain.axes), arming=arming, fastest=fastest_of(domain))
+    return State(first_belief(domain), at_rest(domain.axes), arming=arming, fastest=fastest_of(domain))

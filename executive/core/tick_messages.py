@@ -9,6 +9,7 @@ from tailor.executive.core.state import State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision, Deliberation
 from tailor.executive.deliberation.plan_found import PlanFound
+from tailor.executive.interfaces.domain_results import telemetry
 from tailor.executive.interfaces.reasons import Cause
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 from tailor.schemas import messages as m
@@ -126,7 +127,7 @@ def status_message(context: Context, state: State) -> m.ExecStatus:
         action_index=task.finished,
         action_elapsed_s=running.elapsed_s(state.now_ns) if running else 0.0,
         action_predicted_s=running.predicted_s if running else 0.0,
-        belief=context.domain.belief_values(state.belief),
+        belief=telemetry(context.domain, state.belief),
         sender=context.sender,
         detail=detail,
         result_reason=result_reason,

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from tailor.executive.interfaces.results import name_of, wrong_result
 from tailor.executive.interfaces.values import Array, Belief
 
 ContextRows = tuple[tuple[float, ...], ...]  # one row per object, one value per column
@@ -69,9 +71,14 @@ class ActionContext:
         """The rows of now in an order that depends on their values alone.
 
         Raises:
-          ValueError: `rows` does not return an array of shape (m, c).
+          UsageError: `rows` does not return an array of shape (m, c).
         """
-        rows = np.asarray(self.rows(belief), dtype=np.float64)
+        returned: Any = self.rows(belief)
+        try:
+            rows = np.asarray(returned, dtype=np.float64)
+        except (TypeError, ValueError):  # no numbers, or rows of different lengths
+            rows = np.zeros(0)
         if rows.ndim != 2 or rows.shape[1] != len(self.columns):
-            raise ValueError(f"a context of {', '.join(self.names)} got rows of shape {rows.shape}")
+            expected = f"an array of shape (m, {len(self.columns)}): {', '.join(self.names)} of each object"
+            raise wrong_result(f"{name_of(self.rows)}, rows of an action's context,", returned, expected)
         return tuple(sorted(map(tuple, rows.tolist())))

@@ -83,7 +83,7 @@ class Domain(Protocol):
         tailor.executive.interfaces.outlet; `command_topic` and `message` are then those of the first. One whose belief
         notices that the robot was carried to another place has a method `relocations`, one that knows messages of its
         sensors which cannot be true a method `measurement_fault`, one with axes that are kept a method `kept`, see
-        below.
+        tailor.executive.interfaces.domain_results.
       command_topic: Topic of the command, a key of tailor.schemas.topics.TOPICS.
       sensors: Topics from which the belief is estimated.
       required: Those sensors that must be fresh while the robot moves; the executive holds while one is stale.
@@ -167,33 +167,6 @@ class Domain(Protocol):
           stamp_ns: Stamp of the message.
         """
         ...
-
-
-def relocations(domain: Domain, belief: Belief) -> int:
-    """How often the robot was found where it cannot have driven; 0 for a domain without a method of this name.
-
-    Decisions do not outlast a relocation: they were made for the place before.
-    """
-    count = getattr(domain, "relocations", None)
-    return 0 if count is None else int(count(belief))
-
-
-def measurement_fault(domain: Domain, belief: Belief, message: Message) -> str:
-    """Why a message of a sensor is no measurement; empty if it is one, or for a domain without such a method.
-
-    The belief does not get such a message, and its topic does not stay fresh by it.
-    """
-    judge = getattr(domain, "measurement_fault", None)
-    return "" if judge is None else str(judge(belief, message))
-
-
-def kept_at(domain: Domain, belief: Belief) -> tuple[float, ...]:
-    """A set-point for each axis at which those that are kept stay where they are; () for a domain without `kept`.
-
-    Before a driver obeys, the command follows them: people may have moved a gripper by hand.
-    """
-    stay = getattr(domain, "kept", None)
-    return () if stay is None else tuple(stay(belief))
 
 
 class Conflict(Exception):

@@ -9,11 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Axis, Domain, kept_at
+from tailor.executive.interfaces.domain import Axis, Domain
+from tailor.executive.interfaces.domain_results import kept_at
+from tailor.executive.interfaces.results import name_of, wrong_result
 from tailor.executive.interfaces.values import Belief
 from tailor.schemas.messages import Message
+from tailor.schemas.topics import TOPICS
 
 Command = tuple[float, ...]  # one value per axis
 
@@ -42,11 +46,19 @@ def outlets_of(domain: Domain) -> tuple[Outlet, ...]:
 
 
 def messages_of(domain: Domain, command: Command, stamp_ns: int) -> tuple[tuple[str, Message], ...]:
-    """Topic and message of each outlet for a command of all axes."""
+    """Topic and message of each outlet for a command of all axes.
+
+    Raises:
+      UsageError: A package's method returns no message of the topic's type.
+    """
     messages, first = [], 0
     for outlet in outlets_of(domain):
         last = first + len(outlet.axes)
-        messages.append((outlet.topic, outlet.message(command[first:last], stamp_ns)))
+        message: Any = outlet.message(command[first:last], stamp_ns)
+        if not isinstance(message, TOPICS[outlet.topic].type):
+            expected = f"a {TOPICS[outlet.topic].type.__name__} by the topic {outlet.topic}"
+            raise wrong_result(f"the package of {domain.name}: {name_of(outlet.message)}", message, expected)
+        messages.append((outlet.topic, message))
         first = last
     return tuple(messages)
 

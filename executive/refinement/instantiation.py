@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from tailor.executive.interfaces.action import Action, Parameter
 from tailor.executive.interfaces.action_context import ContextRows
 from tailor.executive.interfaces.domain import Conflict, Domain, LabelQuery, Scenario
+from tailor.executive.interfaces.domain_results import value_of
 from tailor.executive.interfaces.values import Belief, Fact, Interval
 from tailor.executive.planning import Plan
 from tailor.executive.refinement.label_facts import LabelFacts, facts_by_label
@@ -122,7 +123,7 @@ class Pattern:
     def _interval(self, slot: _Slot, belief: Belief) -> Interval | None:
         quantity = slot.parameter.quantity
         query = LabelQuery(quantity, slot.label, slot.holds, slot.achieved, belief, self._scenario)
-        return self._domain.value(query)
+        return value_of(self._domain, query)
 
     def _variable(self, identifier: int, belief: Belief) -> Variable:
         slot = self._slots[identifier]

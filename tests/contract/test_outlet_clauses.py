@@ -64,7 +64,7 @@ def test_kept_set_points_that_are_not_one_for_each_axis_are_found(subject):
     subject.domain.kept = lambda belief: (0.0,) * axes
     assert found(subject, "holds_together") == []
     subject.domain.kept = lambda belief: (0.0,)
-    fault = f"kept: 1 set-points, expected one for each of {axes} axes"
+    fault = f"kept returned (0.0,), expected one set-point for each of {axes} axes"
     assert any(fault in each for each in found(subject, "holds_together"))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from tailor.executive.interfaces.outlet import messages_of, outlets_of
+from tailor.executive.interfaces.outlet import outlets_of
 from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
@@ -52,7 +52,8 @@ def parameters_have_units(subject: Subject, case: str) -> Iterator[str]:
 @clause("package")
 def command_becomes_a_message(subject: Subject, case: str) -> Iterator[str]:
     """`message` turns a command into a message of the type of its topic, with the given stamp."""
-    for topic, message in messages_of(subject.domain, tuple(SMALL for _ in subject.domain.axes), 7):
+    for outlet in outlets_of(subject.domain):
+        topic, message = outlet.topic, outlet.message(tuple(SMALL for _ in outlet.axes), 7)
         expected = TOPICS[topic].type
         if type(message) is not expected:
             yield f"message is a {type(message).__name__}, expected {expected.__name__} by the topic {topic}"

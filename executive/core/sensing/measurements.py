@@ -1,6 +1,6 @@
 """Messages of sensors that are no measurements: incomplete joint states, and motion that the robot is not capable of.
 
-Others are known to the robot's domain alone, see tailor.executive.interfaces.domain.measurement_fault.
+Others are known to the robot's domain alone, see tailor.executive.interfaces.domain_results.measurement_fault.
 
 A belief ignores them, but they would keep the topic fresh: an arm was driven blind to the ends of its joints, and a
 base arrived at full speed.

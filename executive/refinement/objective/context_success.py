@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tailor.executive.interfaces.models import ModelBounds, SuccessModel
+from tailor.executive.interfaces.results import name_of, wrong_result
 from tailor.executive.interfaces.values import Array, Columns
 
 
@@ -36,6 +37,9 @@ class ContextSuccess:
         """Probability of success by itself, and in spite of the objects, each of shape (n,)."""
         count, objects = len(arguments), len(self.rows)
         near = np.ones((objects, count), bool) if self.may_meet is None else self.may_meet(arguments, self.rows)
+        if self.may_meet is not None and np.shape(near) != (objects, count):
+            called = f"{name_of(self.may_meet)}, may_meet of an action's context,"
+            raise wrong_result(called, near, f"an array of shape ({objects}, {count}): rows of objects, arguments")
         which, each = np.nonzero(near)
         beside = np.ones((objects, count))
         if len(each):

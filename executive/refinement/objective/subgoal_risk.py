@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from tailor.executive.interfaces.results import name_of, wrong_result
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.sequence import InstantiatedAction, Variable
 
@@ -23,4 +25,13 @@ def risk_to_next(
         return None
     risk = following.action.subgoal_risk
     values = np.array([np.nan if (value := variables[i].value) is None else value for i in following.variables])
-    return lambda parameters: np.nan_to_num(risk(parameters, values), nan=0.0)
+
+    def checked(parameters: Array) -> Array:
+        returned: Any = risk(parameters, values)
+        risks = np.asarray(returned)
+        if risks.dtype.kind not in "fiub" or risks.shape not in ((), (len(parameters),)):
+            raise wrong_result(f"{name_of(risk)}, a subgoal_risk,", returned, "one risk for each row of subgoals")
+        finite: Array = np.nan_to_num(risks, nan=0.0)
+        return finite
+
+    return checked

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from tailor.executive import domains, planning
 from tailor.executive.interfaces.action import Action
-from tailor.executive.interfaces.domain import Domain, kept_at
+from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.executive.refinement.assertion.asserted_subgoal import goal_indices, start_indices
 from tailor.schemas.errors import UsageError
@@ -20,8 +20,9 @@ from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
+from tailor.tools.launch.checks.call_check import faults_of_functions, faults_of_methods, faults_of_results
 from tailor.tools.launch.checks.driver_check import faults_of_table, mismatches_of
-from tailor.tools.launch.checks.member_check import faults_of_controller, faults_of_members
+from tailor.tools.launch.checks.member_check import faults_of_members
 from tailor.tools.launch.checks.part_check import faults_of_parts
 from tailor.tools.launch.checks.scenario_check import faults_of_scenarios
 
@@ -45,10 +46,10 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     """All faults of a package, each with file and field."""
     yield from faults_of_parts(spec)
     where = spec.domain
-    unlike = [f"{where}: {fault}" for fault in faults_of_members(domain)]
-    if unlike:
-        yield from unlike
-        return
+    for look in (faults_of_members, faults_of_methods, faults_of_results):  # each needs what the one before looks at
+        if unlike := [f"{where}: {fault}" for fault in look(domain)]:
+            yield from unlike
+            return
     for field in ("name", "robot"):
         if getattr(domain, field) != getattr(spec, field):
             yield f"{where}: {field} is '{getattr(domain, field)}', expected '{getattr(spec, field)}' by the spec"
@@ -78,9 +79,6 @@ def _faults_of_topics(domain: Domain) -> Iterator[str]:
     axes = tuple(axis for outlet in outlets_of(domain) for axis in outlet.axes)
     if axes != domain.axes:
         yield "axes are not those of all outlets, in their order"
-    kept = kept_at(domain, domain.initial_belief())
-    if kept and len(kept) != len(domain.axes):
-        yield f"kept: {len(kept)} set-points, expected one for each of {len(domain.axes)} axes"
     yield from (f"required: '{name}' is none of sensors" for name in domain.required if name not in domain.sensors)
 
 
@@ -107,7 +105,7 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
             yield f"{kind}_model is '{model}', expected ACTION/{kind}"
         elif model and model.rpartition("/")[0] not in domain.actions:
             yield f"{kind}_model is '{model}', expected one of an action: {', '.join(domain.actions)}"
-    yield from faults_of_controller(action)
+    yield from faults_of_functions(action)
     yield from _faults_of_context(action)
     outlets = {outlet.name for outlet in outlets_of(domain)}
     yield from (f"drives '{name}', which is none of outlets" for name in action.drives if name not in outlets)

@@ -6,7 +6,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.executive.belief.joint_jumps import jumped
-from tailor.executive.interfaces.domain import relocations
+from tailor.executive.interfaces.domain_results import relocations
 from tailor.schemas.messages import JointState, Sample
 
 TICK_NS = 100_000_000

@@ -3,7 +3,7 @@
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.interfaces.domain import measurement_fault
+from tailor.executive.interfaces.domain_results import measurement_fault
 from tailor.schemas.messages import Odometry
 from tailor.schemas.messages.soccer import BallPercept, OpponentPercept, OpponentPercepts
 

@@ -11,7 +11,8 @@ from tailor.executive.belief.ball_track import BallTrack
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import belief as believing
 from tailor.executive.domains.soccer import robot
-from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario, relocations
+from tailor.executive.interfaces.domain import Conflict, LabelQuery, Scenario
+from tailor.executive.interfaces.domain_results import relocations
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.messages import Odometry, PoseEstimate, Sample
 from tailor.schemas.messages.soccer import BallPercept

@@ -96,9 +96,22 @@ def test_context_without_its_model_is_refused_even_without_objects():
         SequenceObjective(given.actions, given.variables, MODELS, EXACT)
 
 
-def test_rows_of_another_width_than_the_columns_are_refused():
-    with pytest.raises(ValueError, match="obstacle_x, obstacle_y, obstacle_r"):
-        replace(CONTEXT, rows=lambda belief: np.zeros((2, 4))).believed(())
+WRONG_ROWS = (None, 3.0, np.zeros((2, 4)), [(1.0, 2.0, 0.1), (1.0,)], [("a", "b", "c")], [(None, object(), 1.0)])
+
+
+@pytest.mark.parametrize("wrong", WRONG_ROWS)
+def test_rows_of_another_width_than_the_columns_are_refused(wrong):
+    fault = r"test_context\..*, rows of an action's context, returned .*, expected an array of shape \(m, 3\): obstac"
+    with pytest.raises(UsageError, match=fault) as refused:
+        replace(CONTEXT, rows=lambda belief: wrong).believed(())
+    assert "\n" not in str(refused.value)
+
+
+def test_objects_of_which_nobody_tells_whether_they_are_met_are_refused():
+    near = ContextSuccess(None, ClearanceSuccess(), np.zeros((2, 3)), lambda arguments, rows: None)
+    fault = r"may_meet of an action's context, returned None, expected an array of shape \(2, 5\)"
+    with pytest.raises(UsageError, match=fault):
+        near.factors(np.zeros((5, 8)))
 
 
 def test_object_aside_asserts_nothing():

@@ -89,6 +89,13 @@ def without(*names):
     )
 
 
+def with_members(**members):
+    """The soccer domain with other members."""
+    domain = without()
+    vars(domain).update(members)
+    return domain
+
+
 FAULTS = {
     "name is 'chess', expected 'soccer' by the spec": lambda: soccer(name="chess"),
     "robot is 'hal', expected 'agilo' by the spec": lambda: soccer(robot="hal"),
@@ -107,7 +114,7 @@ FAULTS = {
         duration_model="walk/duration"
     ),
     "actions['goToPose']: controller is the class GoToPose, expected an object": lambda: changed(controller=GoToPose),
-    "actions['goToPose']: controller is a int, expected a callable": lambda: changed(controller=3),
+    "actions['goToPose']: controller is 3, expected a callable": lambda: changed(controller=3),
     "returns a NoneType, expected a Domain": lambda: None,
     "SimpleNamespace lacks axes, ready of Domain": lambda: without("axes", "ready"),
     "required is 'odom', expected a tuple of names": lambda: soccer(required="odom"),
@@ -116,6 +123,27 @@ FAULTS = {
     "actions['goToPose']: parameters is empty": lambda: changed(parameters=()),
     "subgoal_action 'goToPose' begins with the quantity 'x', expected one of this action's first label: v": lambda: (
         changed("approachBall", parameters=domains.load("soccer").actions["approachBall"].parameters[3:])
+    ),
+    "name is None, expected text": lambda: soccer(name=None),
+    "actions is [], expected Actions by name": lambda: soccer(actions=[]),
+    "axes is None, expected a tuple of Axes": lambda: soccer(axes=None),
+    "belief_names is (1, 2), expected a tuple of names": lambda: soccer(belief_names=(1, 2)),
+    "outlets is 3, expected a tuple of Outlets": lambda: with_members(outlets=3),
+    "anchor takes (belief, scenario), expected (belief, scenario, remembered)": lambda: with_members(
+        anchor=lambda belief, scenario: frozenset()
+    ),
+    "kept takes (), expected (belief)": lambda: with_members(kept=lambda: ()),
+    "ready is True, expected a callable": lambda: with_members(ready=True),
+    "initial_belief returned None, expected a belief": lambda: with_members(initial_belief=lambda: None),
+    "belief_values returned None, expected a tuple of numbers": lambda: with_members(belief_values=lambda belief: None),
+    "actions['goToPose']: controller takes (state, belief), expected (state, now_ns, belief, arguments)": lambda: (
+        changed(controller=lambda state, belief: None)
+    ),
+    "actions['goToPose']: arguments takes (), expected (values)": lambda: changed(arguments=lambda: None),
+    "arguments returns None for 3 rows of parameters, expected 3 rows": lambda: changed(arguments=lambda values: None),
+    "arguments returns an array of shape (8,) for 3 rows": lambda: changed(arguments=lambda values: values[0]),
+    "arguments cannot be made: KeyError: 'x' (test_package_check.py, line": lambda: changed(
+        arguments=lambda values: {}["x"]
     ),
     "occurs twice": lambda: changed(parameter={"name": domains.load("soccer").actions["goToPose"].parameters[1].name}),
     "ranges from nan to": lambda: changed(parameter={"lower": NAN}),

@@ -15,7 +15,7 @@ from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import PERIOD_NS, Settings, make_context
 from tailor.executive.domains.kitchen.action_library import GRIP_CUP
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.interfaces.domain import measurement_fault
+from tailor.executive.interfaces.domain_results import measurement_fault
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.interfaces.domain import kept_at, relocations
+from tailor.executive.interfaces.domain_results import kept_at, relocations
 from tailor.schemas.messages import PoseEstimate, Sample
 
 PERIOD_NS = 100_000_000
