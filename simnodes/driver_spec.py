@@ -53,6 +53,10 @@ class DriverSpec:
     outlets: tuple[OutletSpec, ...] = ()
     sensors: tuple[SensorSpec, ...] = ()
 
+    def __post_init__(self) -> None:
+        if self.outlets and self.command_topic != self.outlets[0].topic:
+            raise ValueError(f"command_topic is {self.command_topic}, expected {self.outlets[0].topic}")
+
     def all_outlets(self) -> tuple[OutletSpec, ...]:
         """Every outlet: those listed, or the only one."""
         return self.outlets or (OutletSpec(self.command_topic, self.axes),)
@@ -105,6 +109,8 @@ def read_driver_spec(written: str) -> DriverSpec:
 
 def driver_spec(table: Mapping[str, Any]) -> DriverSpec:
     """The declaration in a table, see `read_driver_spec`."""
+    if "command" in table and "commands" in table:
+        raise ValueError("there are [command] and [[commands]], expected one of them: the first would be ignored")
     commands = tables_in(table, "commands") if "commands" in table else [table_in(table, "command")]
     outlets = tuple(OutletSpec(text(each, "topic"), _axis_names(each)) for each in commands)
     names = [name for outlet in outlets for name in (outlet.topic, *outlet.axes)]

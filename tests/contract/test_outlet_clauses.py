@@ -59,6 +59,14 @@ def test_a_clause_finds_wrong_outlets(clause, base, gripper, fault, subject):
     assert any(fault in each for each in found(subject, clause)), found(subject, clause)
 
 
+def test_a_command_topic_beside_outlets_that_is_none_of_theirs_is_found(subject):
+    subject.domain.command_topic = "joint_cmd"
+    fault = "command_topic is 'joint_cmd', expected that of the first of outlets: cmd_vel"
+    assert any(fault in each for each in found(subject, "holds_together"))
+    subject.domain.command_topic = "cmd_vel"
+    assert found(subject, "holds_together") == []
+
+
 def test_kept_set_points_that_are_not_one_for_each_axis_are_found(subject):
     axes = len(subject.domain.axes)
     subject.domain.kept = lambda belief: (0.0,) * axes

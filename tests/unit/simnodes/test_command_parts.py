@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -54,6 +56,11 @@ def test_both_outlets_have_topics_axes_and_limits_of_their_own():
     assert SPEC.all_outlets()[1] == OutletSpec("joint_cmd", ("lift", "grip"))
     assert SPEC.axes == ("v", "omega", "lift", "grip")
     assert [limit.kept for limit in SPEC.limits] == [None, None, None, 0.05]
+
+
+def test_a_command_topic_that_the_outlets_leave_unused_is_refused():
+    with pytest.raises(ValueError, match="command_topic is grip, expected cmd_vel"):
+        dataclasses.replace(SPEC, command_topic="grip")
 
 
 def test_one_outlet_alone_moves_nothing():

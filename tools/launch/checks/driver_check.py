@@ -17,6 +17,7 @@ from tailor.simnodes.driver_spec import DriverSpec, driver_spec, shipped_driver_
 MIN_FRESH = 2  # messages of a sensor before it is stale, so that it may lose one
 COMMAND_KEYS = ("topic", "rate_hz", "timeout_s", "frame", "axes")
 AXIS_KEYS = ("name", "unit", "lower", "upper", "kept")
+MISPLACED = (*COMMAND_KEYS, "command_topic", "outlets")  # beside the tables, which may be any that people like
 SENSOR_KEYS = ("rate_hz", "frame")
 
 
@@ -50,6 +51,7 @@ def faults_of_table(table: Mapping[str, Any], domain: Domain) -> Iterator[str]:
     yield from (f"sensors: there is no topic '{name}'" for name in table.get("sensors", {}) if name not in TOPICS)
     both = [each["topic"] for each in _commands(table) if each["topic"] in table.get("sensors", {})]
     yield from (f"{name} is the topic of a command and of a sensor, expected two" for name in both)
+    yield from (f"unknown key '{key}', expected it in [command], if at all" for key in MISPLACED if key in table)
     yield from _unknown_keys(table)
     units = {axis.name: axis.unit for axis in domain.axes if axis.unit}
     for axis in (axis for command in _commands(table) for axis in command["axes"]):

@@ -72,6 +72,8 @@ def _faults_of_topics(domain: Domain) -> Iterator[str]:
     field_of_commands = "outlets" if getattr(domain, "outlets", ()) else "command_topic"
     for field, names in ((field_of_commands, commands), ("sensors", domain.sensors)):
         yield from (f"{field}: there is no topic '{name}'" for name in names if name not in TOPICS)
+    if domain.command_topic not in commands:
+        yield f"command_topic is '{domain.command_topic}', expected that of the first of outlets: {commands[0]}"
     names = tuple(outlet.name for outlet in outlets_of(domain))
     for what, each in (("name", names), ("topic", commands)):
         twice = sorted({word for word in each if each.count(word) > 1})

@@ -185,6 +185,12 @@ def test_faults_come_in_the_order_of_the_package():
         ("odom = ", "cmd_vel = ", "driver.toml: cmd_vel is the topic of a command and of a sensor, expected two"),
         ('unit = "m/s"', 'unit = "km/h"', "driver.toml: v has the unit 'km/h', expected m/s as the domain"),
         ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
+        (
+            'robot = "agilo"',
+            'command_topic = "x"',
+            "driver.toml: unknown key 'command_topic', expected it in [command]",
+        ),
+        ("[sensors]", "[[commands]]\n[sensors]", "there are [command] and [[commands]], expected one of them"),
         ("timeout_s = 0.3", "", "timeout_s is missing, expected a finite number"),
         ('robot = "agilo"', "robot = ", "driver.toml: not the specification of a driver: not TOML: Invalid value"),
     ],
