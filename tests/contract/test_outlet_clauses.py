@@ -61,9 +61,9 @@ def test_a_clause_finds_wrong_outlets(clause, base, gripper, fault, subject):
 
 def test_a_command_topic_beside_outlets_that_is_none_of_theirs_is_found(subject):
     subject.domain.command_topic = "joint_cmd"
-    fault = "command_topic is 'joint_cmd', expected that of the first of outlets: cmd_vel"
+    fault = "command_topic is 'joint_cmd', expected that of the first of outlets: porter_rail"
     assert any(fault in each for each in found(subject, "holds_together"))
-    subject.domain.command_topic = "cmd_vel"
+    subject.domain.command_topic = "porter_rail"
     assert found(subject, "holds_together") == []
 
 
