@@ -1,8 +1,12 @@
-"""Loads a Hardware that a person names: `package.module:Class`, or `path/to/file.py:Class`."""
+"""Loads a Hardware that a person names: `package.module:Class`, or `path/to/file.py:Class`.
+
+A file imports the modules beside it by their names, as one that Python is started with.
+"""
 
 from __future__ import annotations
 
 import inspect
+import sys
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -60,6 +64,15 @@ def _module(where: str) -> ModuleType:
     spec = spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None or not path.is_file():
         raise OSError(f"no file {path}")
+    folder = str(path.resolve().parent)
+    if folder not in sys.path:
+        sys.path.append(folder)  # for what lies beside it; last, so that no file there takes the place of a library
     module = module_from_spec(spec)
-    spec.loader.exec_module(module)
+    known = sys.modules.setdefault(path.stem, module)  # where dataclasses look for it, and modules that import it again
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        if known is module:
+            del sys.modules[path.stem]
+        raise
     return module

@@ -1,5 +1,8 @@
 """Hardware is found by module or file; whatever is none is one clear line."""
 
+import sys
+from importlib import import_module
+
 import pytest
 
 from tailor.schemas.errors import UsageError
@@ -65,6 +68,45 @@ class Unplugged(Faulty):
 def test_a_class_is_found_in_a_file_and_in_a_module():
     assert load_hardware(f"{ROOT}/examples/rover_driver.py:Rover").robot == "agilo"
     assert load_hardware("tests.unit.simnodes.hardware.faulty:Faulty").robot == "agilo"
+
+
+BESIDE = """
+from __future__ import annotations
+from dataclasses import dataclass, field
+from tests.unit.simnodes.hardware.faulty import Faulty
+from board_of_the_rover import PORT
+
+@dataclass
+class Settings:
+    ports: list[int] = field(default_factory=list)
+
+class Rover(Faulty):
+    def ports(self):
+        import late_board_of_the_rover
+        return [PORT, late_board_of_the_rover.PORT, Settings().ports]
+"""
+
+
+def test_a_file_imports_the_modules_beside_it_and_hides_no_library(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    for name, text in {
+        "rover_beside": BESIDE,
+        "board_of_the_rover": "PORT = 3",
+        "late_board_of_the_rover": "PORT = 4",
+        "colorsys": "raise ValueError",
+    }.items():
+        (tmp_path / f"{name}.py").write_text(text)
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.chdir(tmp_path.parent)
+    assert load_hardware(f"{tmp_path.name}/rover_beside.py:Rover").ports() == [3, 4, []]
+    assert hasattr(import_module("colorsys"), "rgb_to_hsv"), "the library's"
+
+
+def test_a_file_that_fails_leaves_no_module(tmp_path):
+    (tmp_path / "half_a_rover.py").write_text("import missing_board")
+    with pytest.raises(UsageError, match="No module named 'missing_board'"):
+        load_hardware(f"{tmp_path}/half_a_rover.py:Rover")
+    assert "half_a_rover" not in sys.modules
 
 
 @pytest.mark.parametrize("named", WRONG)
