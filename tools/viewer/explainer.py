@@ -12,11 +12,12 @@ from tailor.executive.composition import ModelLoader, rebuild_context
 from tailor.executive.deliberation.context import Context
 from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import Contexts, Subgoals
+from tailor.schemas.messages import Contexts, RefinementReport, Subgoals
 from tailor.schemas.parsed_files import table_of
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
+from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
 
 STREAM = 5  # of the seed, and the next one; the executive draws from others
 
@@ -79,6 +80,13 @@ class Explainer:
         rng = np.random.default_rng([context.settings.seed, STREAM + 1, message.tick])
         settings, objects = context.settings.refinement, self._objects
         return best_cost(message, context.domain.actions, context.models, settings, rng, objects=objects)
+
+    def why_not_certified(self, message: Subgoals, report: RefinementReport | None) -> str:
+        """Why the choice of the same decision has no certificate, if it has none."""
+        assert self._context is not None, "explanation() returned None"
+        context = self._context
+        settings, objects = context.settings.refinement, self._objects
+        return why_not_certified(message, context.domain.actions, context.models, settings, report, objects)
 
     def fields(self, message: Subgoals) -> Fields | None:
         """The explanation as the page reads it; None also if the models do not suit the settings of the run."""

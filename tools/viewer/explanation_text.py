@@ -14,6 +14,7 @@ from tailor.tools.viewer.explanations.explanation import Explanation, FreeParame
 from tailor.tools.viewer.explanations.situation import Situation
 
 SHOWN_S = 0.005  # smaller differences print as nothing
+NO_BOUND = "no bound on the models' optimum"
 GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
@@ -32,13 +33,15 @@ def duration_table(explanation: Explanation) -> Table:
     return table
 
 
-def explanation_lines(explanation: Explanation, best_cost: float, decision: Decision) -> list[str]:
-    """Lines below the table of durations; `best_cost`: of a long search."""
+def explanation_lines(
+    explanation: Explanation, best_cost: float, decision: Decision, not_certified: str = NO_BOUND
+) -> list[str]:
+    """Lines below the table of durations; `best_cost`: of a long search; `not_certified`: why there is no bound."""
     lines = [parameter_text(parameter) for parameter in explanation.parameters]
     for situation in explanation.situations:
         lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
     long_search = long_search_text(explanation.chosen_cost, best_cost)
-    certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost))
+    certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost), not_certified)
     return [*lines, long_search, certified, search_text(decision, explanation.chosen_cost)]
 
 
@@ -83,10 +86,10 @@ def certified_gap_pct(report: RefinementReport | None, chosen_cost: float) -> fl
     return max(0.0, 100 * (chosen_cost / report.best_s * (1 + report.gap_pct / 100) - 1))
 
 
-def certificate_text(gap_pct: float | None) -> str:
-    """Certified gap between the refined choice and the optimum of the models."""
+def certificate_text(gap_pct: float | None, not_certified: str = NO_BOUND) -> str:
+    """Certified gap between the refined choice and the optimum of the models, or why there is none."""
     if gap_pct is None:
-        return "not certified: no bound on the models' optimum"
+        return f"not certified: {not_certified}"
     return f"certified: within {gap_pct:.1f} % of the models' optimum"
 
 

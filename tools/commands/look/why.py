@@ -36,6 +36,7 @@ class ExplainedDecision:
     decision: Decision
     explanation: Explanation | None
     best_cost: float = math.inf  # of a long search
+    not_certified: str = ""  # why the choice has no certificate; empty if it has one
 
     @property
     def title(self) -> str:
@@ -107,7 +108,10 @@ def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
     explanation = explainer.explanation(decision.subgoals)
     if explanation is None:
         return ExplainedDecision(decision, None)
-    return ExplainedDecision(decision, explanation, explainer.best_cost(decision.subgoals))
+    best_cost, reason = explainer.best_cost(decision.subgoals), ""
+    if certified_gap_pct(decision.report, explanation.chosen_cost) is None:
+        reason = explainer.why_not_certified(decision.subgoals, decision.report)
+    return ExplainedDecision(decision, explanation, best_cost, reason)
 
 
 def _show(decisions: Sequence[ExplainedDecision]) -> None:
@@ -117,7 +121,8 @@ def _show(decisions: Sequence[ExplainedDecision]) -> None:
         lines = ["no parameter was free"]
         if explained.explanation is not None:
             console.print(duration_table(explained.explanation))
-            lines = explanation_lines(explained.explanation, explained.best_cost, explained.decision)
+            known = (explained.best_cost, explained.decision, explained.not_certified)
+            lines = explanation_lines(explained.explanation, *known)
         for line in lines:
             console.print(f"  {plain(line)}")
         console.print()
@@ -136,6 +141,7 @@ def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
         "certified_gap_pct": None
         if explained.explanation is None
         else certified_gap_pct(report, explained.explanation.chosen_cost),
+        "not_certified": explained.not_certified,
         "search": None
         if report is None
         else {

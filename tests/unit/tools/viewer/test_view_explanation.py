@@ -16,7 +16,14 @@ from tailor.schemas.messages import RefinementReport, Subgoals
 from tailor.tools.figures.alternatives import draw_alternatives
 from tailor.tools.viewer.decisions import Decision
 from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import duration_table, features_text, long_search_text, search_text
+from tailor.tools.viewer.explanation_text import (
+    duration_table,
+    explanation_lines,
+    features_text,
+    long_search_text,
+    search_text,
+)
+from tailor.tools.viewer.explanations import missing_certificate
 from tailor.tools.viewer.explanations.decided_sequence import sequence_of
 from tailor.tools.viewer.explanations.explanation import explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
@@ -59,6 +66,47 @@ def test_the_explained_choice_is_the_choice(refined) -> None:
     assert explanation.chosen_s == pytest.approx(refined[1].predicted_s)
     assert explanation.chosen_cost == pytest.approx(refined[1].total_s)
     assert explanation.greedy_cost >= explanation.chosen_cost
+
+
+def report(finished=True):
+    return RefinementReport(0, 2, 2, "Chain", finished, 9, 9, 5.0, 4.0)
+
+
+UNSPANNED = {name: replace(each, arguments=lambda values: 1.0 * values, spans=None) for name, each in LIBRARY.items()}
+REASONS = {
+    "certify_checks is 0": {"settings": replace(SETTINGS, certify_checks=0)},
+    "approachBall: its models have no bounds": {},
+    "approachBall: its model arguments are not available as intervals": {"library": UNSPANNED},
+    "its actions are not those of the library": {"library": {}},
+}
+UNPROVEN = {
+    "the search was interrupted before a proof began": report(finished=False),
+    "no gap of at most 25 % was proven in the time that the search had left": report(),
+}
+
+
+def reason_for(refined, **given):
+    usual = {"library": LIBRARY, "models": MODELS, "settings": SETTINGS, "report": report()}
+    return missing_certificate.why_not_certified(message_of(*refined), **{**usual, **given})
+
+
+@pytest.mark.parametrize("reason", REASONS)
+def test_a_choice_that_has_no_bound_has_a_reason(refined, reason) -> None:
+    assert reason_for(refined, **REASONS[reason]) == reason
+
+
+@pytest.mark.parametrize("reason", UNPROVEN)
+def test_a_proof_that_proved_nothing_is_a_reason(refined, reason, monkeypatch) -> None:
+    monkeypatch.setattr(missing_certificate, "certificate", lambda *given: object())
+    assert reason_for(refined, report=UNPROVEN[reason]) == reason
+
+
+def test_the_reason_is_printed_in_place_of_the_gap(refined) -> None:
+    explanation = explained(message_of(*refined))
+    lines = explanation_lines(
+        explanation, 4.0, Decision(1.0, message_of(*refined), report(), 0.1, 3), "its models are odd"
+    )
+    assert "not certified: its models are odd" in lines
 
 
 def test_greedy_makes_the_first_action_shorter_and_the_whole_longer(refined) -> None:
