@@ -9,12 +9,14 @@ from itertools import chain
 
 import pytest
 
+from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
 from tailor.schemas.installed import models_folder
 from tailor.schemas.packages.scene import sphere
 from tailor.tools.contract.subject import Subject
 from tailor.tools.contract.suite import CLAUSES, cases, faults
+from tailor.tools.contract.units import is_unit
 from tailor.tools.new_robot.templates import kinds
 from tests.support.robots.known_robot import known_robot
 
@@ -292,6 +294,32 @@ def test_a_subgoal_with_a_quantity_in_metres_must_be_drawn(subject):
     assert subgoal_faults(subject) == [
         "drive: of_subgoal returns None for x, y, phi, v, expected a pose: x, y are in metres, which mark a place"
     ]
+
+
+@pytest.mark.parametrize("unit", ["metres", "mps", "M", "Kg", "m/", "-", "rads", "sec", "RPM", "m s-", "0", 3])
+def test_free_text_is_no_unit(unit, subject):
+    expected = f"has the unit {unit!r}, expected SI symbols such as m, rad/s"
+    v, omega = subject.domain.axes
+    subject.domain.axes = (dataclasses.replace(v, unit=unit), omega)
+    subject.domain.belief_names = (f"x ({unit})", "y (m)", "phi (rad)", "v (m/s)", "omega (rad/s)")
+    first, *others = subject.domain.actions["drive"].parameters
+    column = ContextColumn("box_x", unit, -1.0, 1.0)
+    context = ActionContext((column,), lambda belief: [], "drive/clearance", "box")
+    with_action(subject, parameters=(dataclasses.replace(first, unit=unit), *others), context=context)
+    names = ("axes_contain_rest", "parameters_have_units", "belief_values_have_units")
+    found = {name: "; ".join(faults(CLAUSES[name], subject, "")) for name in names}
+    assert f"axis v {expected}" in found["axes_contain_rest"]
+    assert f"drive: parameter x {expected}" in found["parameters_have_units"]
+    assert f"drive: column box_x {expected}" in found["parameters_have_units"]
+    assert f"'x ({unit})' has the unit '{unit}', expected SI" in found["belief_values_have_units"]
+
+
+UNITS = ("m", "rad", "1", "m/s", "rad/s", "m/s²", "m/s^2", "m/s2", "N·m", "Nm", "kg", "cm", "deg", "%", "1/s", "s⁻¹")
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_symbols_of_si_and_compounds_are_units(unit):
+    assert is_unit(unit)
 
 
 OF_SEVERAL_OUTLETS = ("outlets_are_driven",)  # test_outlet_clauses.py

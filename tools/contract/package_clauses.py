@@ -9,9 +9,11 @@ from tailor.executive.interfaces.outlet import outlets_of
 from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
+from tailor.schemas.parsed_files import shown
 from tailor.schemas.topics import TOPICS
 from tailor.tools.contract.clause import clause
 from tailor.tools.contract.subject import Subject
+from tailor.tools.contract.units import EXPECTED, is_unit
 from tailor.tools.launch.checks.package_check import faults_of_package
 
 SMALL = 0.1  # a command of every axis
@@ -25,10 +27,9 @@ def holds_together(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("package")
 def axes_contain_rest(subject: Subject, case: str) -> Iterator[str]:
-    """Each axis of the command has a unit and a range with its rest in it: zero, or what a kept axis starts with."""
+    """Each axis of the command has a unit of SI, and a range with its rest in it: zero, or a kept axis' first one."""
     for axis in subject.domain.axes:
-        if not axis.unit:
-            yield f"axis {axis.name} has no unit"
+        yield from _fault_of_unit(f"axis {axis.name}", axis.unit)
         rest = 0.0 if axis.kept is None else axis.kept
         if not axis.lower <= rest <= axis.upper:
             yield f"axis {axis.name} ranges from {axis.lower:g} to {axis.upper:g}, expected {rest:g} between them"
@@ -44,9 +45,12 @@ def outlets_are_driven(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("package")
 def parameters_have_units(subject: Subject, case: str) -> Iterator[str]:
-    """Each parameter of an action has a unit."""
+    """Each parameter of an action, and each column of its context, has a unit of SI, such as m, rad/s or 1."""
     for action in subject.domain.actions.values():
-        yield from (f"{action.name}: parameter {p.name} has no unit" for p in action.parameters if not p.unit)
+        columns = action.context.columns if action.context is not None else ()
+        for what, declared in (("parameter", action.parameters), ("column", columns)):
+            for each in declared:
+                yield from _fault_of_unit(f"{action.name}: {what} {each.name}", each.unit)
 
 
 @clause("package")
@@ -70,11 +74,20 @@ def not_ready_before_a_percept(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("package")
 def belief_values_have_units(subject: Subject, case: str) -> Iterator[str]:
-    """Each name of `belief_names` ends with its unit in parentheses, and no name occurs twice."""
+    """Each name of `belief_names` ends with its unit of SI in parentheses, and no name occurs twice."""
     names = subject.domain.belief_names
-    yield from (f"'{name}' has no unit" for name in names if not (name.endswith(")") and " (" in name))
+    for name in names:
+        unit = name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") and " (" in name else ""
+        yield from _fault_of_unit(f"'{name}'", unit)
     if len(set(names)) < len(names):
         yield f"a name occurs twice: {', '.join(names)}"
+
+
+def _fault_of_unit(what: str, unit: str) -> Iterator[str]:
+    if not unit:
+        yield f"{what} has no unit"
+    elif not (isinstance(unit, str) and is_unit(unit)):
+        yield f"{what} has the unit {shown(unit)}, expected {EXPECTED}"
 
 
 @clause("package")
