@@ -15,6 +15,7 @@ from tailor import __version__
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.termination import interrupted_by_sigterm
 
 TRY_AGAIN = 75
 INTERRUPTED = 130
@@ -76,6 +77,7 @@ GROUPS = {
     "measure": "evaluations and benchmarks",
     "completion": "the shell",
 }
+WITH_WORKERS = ("learn", "measure")  # groups of commands that start processes of their own
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -85,8 +87,8 @@ def main(argv: Sequence[str] | None = None) -> int:
       argv: Arguments without the program name; default: those of the process.
 
     Returns:
-      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted; 75 (EX_TEMPFAIL of sysexits.h) if what
-      another process provides is not there and a supervisor, such as systemd, may try again.
+      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted, 143 by SIGTERM; 75 (EX_TEMPFAIL of
+      sysexits.h) if what another process provides is not there and a supervisor, such as systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(["tailor", *arguments[:1]])
@@ -157,7 +159,9 @@ def _call(name: str, rest: Sequence[str]) -> int:
     module.configure(parser)
     parsed = _parsed(parser, rest)
     require(*NEEDS.get(name, ()))
-    return int(module.run(parsed))
+    if module.__name__.split(".")[-2] not in WITH_WORKERS:
+        return int(module.run(parsed))
+    return interrupted_by_sigterm(lambda: int(module.run(parsed)), parser.prog)
 
 
 def _parsed(parser: argparse.ArgumentParser, rest: Sequence[str]) -> argparse.Namespace:

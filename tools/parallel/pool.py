@@ -72,12 +72,12 @@ def _unless_killed(results: Iterator[Numbered]) -> Iterator[Numbered]:
 
 @contextmanager
 def _holding_interrupts() -> Iterator[None]:
-    """Within the context, SIGINT waits; processes and threads that start there never receive it.
+    """Within the context, SIGINT and SIGTERM wait; processes and threads that start there never receive them.
 
-    Ctrl-C reaches every process of a terminal. This one ends the others, which would print a traceback each: blocked
-    from their first instruction on, since they would fail while they import, too.
+    Ctrl-C reaches every process of a terminal, and SIGTERM often a whole group. This one ends the others, which would
+    print a traceback each: blocked from their first instruction on, since they would fail while they import, too.
     """
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""Ctrl-C reaches all processes of a terminal; only the command itself reacts, and ends its workers."""
+"""Ctrl-C reaches all processes of a terminal; only the command itself reacts, and ends its workers. So does SIGTERM."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ import subprocess
 import time
 from pathlib import Path
 
+import pytest
+
 from tailor.runtime.processes.child import tailor
+from tailor.tools.cli.termination import interrupted_by_sigterm
 from tailor.tools.parallel.pool import completed, in_order
 from tests.support.bus_system import ROOT
 from tests.support.patience import PATIENCE_S
@@ -18,7 +21,7 @@ WORKER = b"popen_loky"
 
 
 def is_blocked(_: int) -> bool:
-    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    return {signal.SIGINT, signal.SIGTERM} <= signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def workers_of(pid: int) -> list[int]:
@@ -31,12 +34,29 @@ def workers_of(pid: int) -> list[int]:
     return found
 
 
+def interrupted() -> int:
+    os.kill(os.getpid(), signal.SIGTERM)
+    return 0
+
+
+def test_a_command_that_says_nothing_of_its_end_by_sigterm_ends_with_a_line(capsys) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    assert interrupted_by_sigterm(interrupted, "tailor evaluate") == 143
+    assert capsys.readouterr().err == "tailor evaluate: ended by SIGTERM\n"
+    assert interrupted_by_sigterm(lambda: 1, "tailor evaluate") == 1
+    assert signal.getsignal(signal.SIGTERM) == before
+
+
 def test_an_interrupt_is_for_the_process_that_waits() -> None:
     assert in_order(completed(is_blocked, [(0,), (1,)], 2)) == [True, True]
     assert not is_blocked(0)
 
 
-def test_workers_that_are_interrupted_while_they_start_print_nothing(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "whole_group", "code"),
+    [(signal.SIGINT, True, 130), (signal.SIGTERM, True, 143), (signal.SIGTERM, False, 143)],
+)
+def test_workers_that_are_interrupted_while_they_start_print_nothing(number, whole_group, code, tmp_path: Path) -> None:
     command = tailor(
         "gather", "agilo", "goToPose", "--episodes", "500", "--jobs", "2", "--out", str(tmp_path), "--json"
     )
@@ -45,7 +65,9 @@ def test_workers_that_are_interrupted_while_they_start_print_nothing(tmp_path: P
     while not workers_of(running.pid):
         assert time.monotonic() < deadline
         assert running.poll() is None
-    os.killpg(running.pid, signal.SIGINT)
+    workers = workers_of(running.pid)
+    (os.killpg if whole_group else os.kill)(running.pid, number)
     _, errors = running.communicate(timeout=PATIENCE_S)
-    assert running.returncode == 130
+    assert running.returncode == code
+    assert not [each for each in workers if Path(f"/proc/{each}/exe").exists()], "none outlives it"
     assert errors.replace("\n", "").replace(" ", "") == f"{tmp_path}/goToPose:kept0of500;--resumecontinues"
