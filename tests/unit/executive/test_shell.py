@@ -1,10 +1,12 @@
 """The live shell around a core whose robot's code raises in the midst of a run."""
 
 import dataclasses
+import re
 
 import pytest
 
 from tailor.executive.shell import Shell
+from tailor.runtime.bus.service import ServiceRequest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import TickReport, VelocityCommand
 from tests.support.toy_domain import SLIDE, driver, line_context, odometry
@@ -85,3 +87,65 @@ def test_what_raises_again_while_the_robot_is_brought_to_rest_hides_nothing():
     context.domain.message = lost
     with pytest.raises(OSError, match="lost"):
         shell.run(context.problem.goal_text, lambda state: False)
+
+
+class Goals(Session):
+    """A bus on which requests for goals wait; keeps the answers."""
+
+    def __init__(self, clock, requests):
+        super().__init__()
+        self.clock, self.requests, self.answers = clock, requests, []
+
+    def poll(self):
+        at_ns = min(self.requests, default=None)
+        if at_ns is None or self.clock.ns < at_ns:
+            return None
+        return ServiceRequest(self.requests.pop(at_ns), lambda *answer: self.answers.append(answer))
+
+
+class PausedClock(Clock):
+    """A clock of a process that is stopped while it waits for its eleventh period."""
+
+    def __init__(self, pause_s):
+        super().__init__()
+        self.waits, self.pause_s = 0, pause_s
+
+    def sleep_until(self, until_ns):
+        self.waits += 1
+        self.ns = until_ns + round(self.pause_s * 1e9) * (self.waits == 10)
+
+
+def answer_after(pause_s, goal, delay_s=0.05, waits=False):
+    """The answer to a goal that waits while the executive stands still, in a tick or between two, and its goal then."""
+    clock = PausedClock(pause_s if waits else 0.0)
+    session = Goals(clock, {clock.ns + round((1.0 + pause_s + delay_s) * 1e9): goal})
+    shell = Shell(line_context(), session, clock, {})
+
+    def until(state):
+        if state.tick == 10 and not waits:
+            clock.ns += round(pause_s * 1e9)
+        return bool(session.answers)
+
+    state = shell.run("", until)
+    return session.answers[0], state.task.goal
+
+
+@pytest.mark.promise("P41")
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_goal_that_waited_while_the_executive_stood_still_is_refused(waits):
+    (accepted, text), goal = answer_after(12.0, "(visited a)", -0.2, waits=waits)
+    assert (accepted, goal) == (False, "")
+    assert re.fullmatch(r"the executive stood still for 1[12]\.\d s; send the goal again if it holds", text)
+    (accepted, _), goal = answer_after(0.8, "(visited a)", -0.2, waits=waits)
+    assert (accepted, goal) == (False, ""), "the bus takes a process for gone by then"
+    (accepted, _), goal = answer_after(12.0, "(visited a)", delay_s=0.8, waits=waits)
+    assert (accepted, goal) == (False, ""), "the bus delivers it a little later"
+
+
+@pytest.mark.parametrize(("pause_s", "delay_s", "goal"), [(0.5, 0.05, "(visited a)"), (12.0, 1.5, "(visited a)")])
+def test_a_goal_after_a_short_pause_or_later_counts(pause_s, delay_s, goal):
+    assert answer_after(pause_s, goal, delay_s) == ((True, "accepted"), goal)
+
+
+def test_dropping_the_goal_counts_also_after_a_pause():
+    assert answer_after(12.0, "(and)")[0] == (True, "no goal is open")
