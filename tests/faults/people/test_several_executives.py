@@ -29,7 +29,7 @@ def told(endpoint, *words):
 
 
 @contextmanager
-def executives(endpoint, senders):
+def executives(endpoint, senders, refusing=()):
     """Processes that publish a status at 10 Hz and answer requests for goals; yields the requests of each."""
     ended, requests = threading.Event(), {sender: [] for sender in senders}
 
@@ -40,7 +40,7 @@ def executives(endpoint, senders):
                 statuses.publish(replace(example(ExecStatus), scenario=scenario, sender=sender))
                 if (request := goals.poll()) is not None:
                     requests[sender].append(request.text)
-                    request.accept(f"by {sender[:2]}")
+                    (request.refuse if sender in refusing else request.accept)(f"by {sender[:2]}")
 
     threads = [threading.Thread(target=serve, args=each) for each in senders.items()]
     for thread in threads:
@@ -89,3 +89,12 @@ def test_disarming_stopping_and_dropping_goals_reach_all(robot):
         assert (done.returncode, sorted(done.stdout.splitlines())) == (0, ["by 11", "by 22"])
         assert "2 executives answered, expected one" in done.stderr
     assert list(requests.values()) == [["(and)"], ["(and)"]]
+
+
+def test_a_goal_that_one_accepts_and_another_refuses_is_told_in_one_line(robot):
+    _, endpoint = robot
+    with executives(endpoint, SENDERS, refusing=["2" * 32]):
+        done = told(endpoint, "goal", "(and (visited way1))")
+    assert (done.returncode, done.stdout) == (2, "by 11\n")
+    split = "1 accepted it and 1 did not; `tailor status` names them"
+    assert done.stderr.splitlines() == ["by 22", f"2 executives answered, expected one: {split}"]

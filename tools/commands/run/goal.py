@@ -41,5 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
         for accepted, answer in answers:
             print(plain(answer), file=sys.stdout if accepted else sys.stderr)
     if len(answers) > 1:
-        print(f"{len(answers)} executives answered, expected one: `tailor status` names them", file=sys.stderr)
+        took = sum(accepted for accepted, _ in answers)
+        split = f"{took} accepted it and {len(answers) - took} did not; " if 0 < took < len(answers) else ""
+        print(f"{len(answers)} executives answered, expected one: {split}`tailor status` names them", file=sys.stderr)
     return 0 if everyone else 2
