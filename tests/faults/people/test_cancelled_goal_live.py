@@ -73,7 +73,7 @@ def system(launched):
 
 
 @pytest.mark.promise("P41")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize(
     "told", [(), ("goal", "--cancel"), ("goal", "(visited way3)")], ids=["own", "dropped", "other"]
 )
@@ -92,7 +92,7 @@ def test_an_executive_that_is_started_again_has_no_goal(system, told):
 
 
 @pytest.mark.promise("P41")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 def test_a_cancelled_goal_brakes_the_robot_and_is_not_pursued_when_people_arm_it_after_an_estop(system):
     goal = system.latest[ExecStatus].goal
     assert system.tell("goal", "--cancel") == f"cancelled: {goal}"

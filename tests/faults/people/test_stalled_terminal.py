@@ -24,7 +24,7 @@ from tests.support.bus_system import accepts, answers, bus_system, child_pid, fr
 from tests.support.patience import PATIENCE_S, wait_until
 
 PLAIN_ROBOT = 'robot = "agilo"\n[bus]\nconnect = "tcp/127.0.0.1:1"\n[topics]\npose = ""\n[pose]\nstart = [0, 0, 0]\n'
-pytestmark = pytest.mark.xdist_group("live")
+pytestmark = pytest.mark.xdist_group("systems")
 
 
 @contextmanager

@@ -36,7 +36,7 @@ def lie(session, until):
 
 
 @pytest.mark.promise("P48")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize("number", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in range(2, 21))])
 def test_a_stranger_who_speaks_as_executive_and_driver_does_not_disturb_a_run(number, tmp_path):
     endpoint, ended = free_endpoint(), threading.Event()
