@@ -10,8 +10,9 @@ setup: .venv/.installed
 .venv/.installed: pyproject.toml constraints.txt
 	@$(PYTHON) -c '$(OLD)'
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[test]'
-	@$(BIN)/python -m compileall -q executive models robots runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt -e '.[test]'
+	@$(BIN)/python -m compileall -qq -j 0 .venv/lib || true  # pip would do so on one core; some examples in there are of Python 2
+	@$(BIN)/python -m compileall -q -j 0 executive models robots runtime schemas simnodes src tools  # or each start compiles them: 0.3 s
 	@touch $@
 
 # A demonstration needs the simulator and plots only; where everything is set up, it takes that.

@@ -50,6 +50,12 @@ def recording(measured_run):
     return measured_run[0]
 
 
+@pytest.fixture(scope="module")
+def beside_opponents(tmp_path_factory):
+    """A recording of a live run on the worker of systems, for tests that compute for long."""
+    return live_run(tmp_path_factory.mktemp("run") / "opponents.mcap", "--scenario", "opponents")
+
+
 def live_run(path, *more):
     flags = ("--once", "--seed", 1, "--record", path, "--connect", free_endpoint(), *more)
     done = command("up", "soccer", *flags)
@@ -69,24 +75,24 @@ def test_recorded_live_run_is_repeated_by_the_core_bit_for_bit(recording):
 
 
 @pytest.mark.xdist_group("systems")
-def test_a_run_beside_opponents_is_repeated_too(tmp_path):
-    verified = command("verify", live_run(tmp_path / "opponents.mcap", "--scenario", "opponents"), "--json")
+def test_a_run_beside_opponents_is_repeated_too(beside_opponents):
+    verified = command("verify", beside_opponents, "--json")
     assert verified.returncode == 0
     assert json.loads(verified.stdout)[0]["difference"] is None
 
 
-@pytest.mark.xdist_group("live")
-def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte(recording, tmp_path):
+@pytest.mark.xdist_group("systems")
+def test_two_runs_from_the_recorded_inputs_equal_it_and_each_other_byte_for_byte(beside_opponents, tmp_path):
     """Record A == record B == replay(A): the equation that defines determinism, in processes of their own."""
     from tailor.tools.recordings.recorded_run import RecordedRuns
 
     runs = [tmp_path / "first.mcap", tmp_path / "second.mcap"]
     for seed, path in enumerate(runs, start=1):
         other_hashes = {**os.environ, "PYTHONHASHSEED": str(seed)}
-        verifying = tailor("verify", str(recording), "--output", str(path))
+        verifying = tailor("verify", str(beside_opponents), "--output", str(path))
         subprocess.run(verifying, env=other_hashes, check=True, cwd=ROOT, capture_output=True)
     assert runs[0].read_bytes() == runs[1].read_bytes()
-    live, again = (RecordedRuns(path).runs[0] for path in (recording, runs[0]))
+    live, again = (RecordedRuns(path).runs[0] for path in (beside_opponents, runs[0]))
     assert (
         live.published.keys()
         == again.published.keys()

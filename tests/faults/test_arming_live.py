@@ -82,7 +82,7 @@ WAYS = {
 
 
 @pytest.mark.promise("P41")
-@pytest.mark.xdist_group("live")
+@pytest.mark.xdist_group("systems")
 @pytest.mark.parametrize("number", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in range(1, 20))])
 def test_only_people_arm_again(launched, number):
     """After each way, in one system, in random order: people arm the robot in between."""
