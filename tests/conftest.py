@@ -6,9 +6,12 @@
 import gc
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.support.spreading import spread
 
 pytest_plugins = ["tests.support.safety.promises"]
 # On busy cores the threads of scikit-learn spin while they wait for one another: 22 s of CPU for what takes 5.
@@ -16,6 +19,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # `make test &` in a script: what tests start would ignore Ctrl-C
     signal.signal(signal.SIGINT, signal.default_int_handler)
 os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onnxruntime before tailor.models
+
+WAITING = {Path(__file__).with_name(name) for name in ("e2e", "faults")}  # folders of tests that start processes
 
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeat", settings.get_profile("explore"), derandomize=True)
@@ -54,7 +59,7 @@ def pytest_collection_finish(session):
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the marks in its own
 def pytest_collection_modifyitems(config, items):
-    """With `--dist loadgroup`, run a group on one worker, and make each fixture of a module once."""
+    """With `--dist loadgroup`, run a group on one worker, make each fixture of a module once, and spread what waits."""
     for item in items:
         fixtures = (each for defs in item._fixtureinfo.name2fixturedefs.values() for each in defs)
         if item.get_closest_marker("xdist_group") is None and any(each.scope == "module" for each in fixtures):
@@ -63,3 +68,9 @@ def pytest_collection_modifyitems(config, items):
         # xdist up to 3.8 cannot name the group of an item to pytest from 9.2 on: pytest-dev/pytest-xdist#1386
         if group is not None and getattr(config.option, "loadgroup", False) and hasattr(item, "_id"):
             item._id = type(item._id).parse(f"{item.nodeid}@{group.args[0]}")
+    if getattr(config.option, "loadgroup", False):
+        spread(items, lambda item: waits(item) and item.get_closest_marker("xdist_group") is None)
+
+
+def waits(item):
+    return not WAITING.isdisjoint(item.path.parents)
