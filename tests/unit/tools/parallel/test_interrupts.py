@@ -71,3 +71,24 @@ def test_workers_that_are_interrupted_while_they_start_print_nothing(number, who
     assert running.returncode == code
     assert not [each for each in workers if Path(f"/proc/{each}/exe").exists()], "none outlives it"
     assert errors.replace("\n", "").replace(" ", "") == f"{tmp_path}/goToPose:kept0of500;--resumecontinues"
+
+
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGKILL])
+def test_no_worker_outlives_a_command_that_is_killed(tmp_path: Path, sent: signal.Signals) -> None:
+    """Idle ones would keep memory and standard output for minutes: a pipe behind the command would wait for them."""
+    command = tailor(
+        "gather", "agilo", "goToPose", "--episodes", "2000", "--jobs", "2", "--out", str(tmp_path), "--json"
+    )
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, cwd=ROOT, start_new_session=True)
+    try:
+        deadline = time.monotonic() + PATIENCE_S
+        while not list(tmp_path.glob("goToPose/part-*.parquet")):
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        assert len(workers_of(running.pid)) == 2
+        running.send_signal(sent)
+        running.communicate(timeout=PATIENCE_S)  # until nobody holds the pipe
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
+    assert running.returncode == -sent
