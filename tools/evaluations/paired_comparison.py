@@ -6,6 +6,7 @@ unit count as one value, their mean.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -21,6 +22,8 @@ Units = Sequence[str | int]
 P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000
 SAME = 1e-9  # share by which equal differences of seconds may differ, as their sums are rounded
+DIGITS = 6  # of the differences whose ranks are tested: rounding errors would rank those that are equal
+MIN_RESAMPLED = 10  # units of a bootstrap: of three the 95 % interval holds the truth in 75 % of cases, of ten in 90 %
 MIN_UNITS = 3  # the t-interval over two is 12.7 standard errors wide either way, whatever happened within each
 
 
@@ -78,7 +81,6 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = N
     if len(ratios) < 2:
         raise UsageError(f"{len(ratios)} episodes to compare, expected two that end well both ways: more --episodes")
     low, high = mean_interval(ratios)
-    same = bool(np.all(firsts == seconds))
     return Comparison(
         len(first),
         len(ratios),
@@ -87,7 +89,7 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = N
         100 * float(ratios.mean()),
         (100 * low, 100 * high),
         _dependent_t_test(firsts, seconds),
-        1.0 if same else float(stats.wilcoxon(firsts, seconds).pvalue),
+        _rank_test(firsts, seconds),
         100 * float(np.mean(second > first)),
     )
 
@@ -132,9 +134,15 @@ def mean_interval(values: Array) -> tuple[float, float]:
 
 
 def ratio_interval(parts: Array, wholes: Array) -> tuple[float, float]:
-    """95 % bootstrap interval over units of sum(parts) / sum(wholes); shapes (n,)."""
+    """95 % bootstrap interval over units of sum(parts) / sum(wholes); shapes (n,).
+
+    NaN for fewer than MIN_RESAMPLED units, or if all wholes are 0; resamples whose wholes are 0 are left out.
+    """
+    if len(parts) < MIN_RESAMPLED or not wholes.any():
+        return math.nan, math.nan
     drawn = np.random.default_rng(0).integers(len(parts), size=(RESAMPLES, len(parts)))
-    low, high = np.percentile(parts[drawn].sum(axis=1) / wholes[drawn].sum(axis=1), [2.5, 97.5])
+    sums = wholes[drawn].sum(axis=1)
+    low, high = np.percentile(parts[drawn].sum(axis=1)[sums != 0.0] / sums[sums != 0.0], [2.5, 97.5])
     return float(low), float(high)
 
 
@@ -167,6 +175,13 @@ def _dependent_t_test(first: Array, second: Array) -> float:
     if np.ptp(apart) <= SAME * np.abs(apart).max():
         return float(2.0 ** (1 - len(apart)))
     return float(stats.ttest_rel(first, second).pvalue)
+
+
+def _rank_test(first: Array, second: Array) -> float:
+    """P-value of Wilcoxon's signed-rank test, two-sided; of few pairs with ties its approximation may be below any."""
+    apart = np.round(second - first, DIGITS)
+    count = np.count_nonzero(apart)
+    return max(float(stats.wilcoxon(apart).pvalue), float(2.0 ** (1 - count))) if count else 1.0
 
 
 def _paired(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:

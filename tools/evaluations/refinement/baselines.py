@@ -5,6 +5,7 @@ An improvement over a poor greedy choice looks large; the ceiling puts it into p
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -15,6 +16,7 @@ from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import ratio_interval
 
 Outcomes = Mapping[int, Outcome]  # by seed
+UNKNOWN = ("oracle_pct", "oracle_again_pct", "refined_same_starts_pct")  # of no start
 
 
 def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes) -> dict[str, Any]:
@@ -29,12 +31,15 @@ def against_oracle(judged: Sequence[Oracle], greedy: Outcomes, refined: Outcomes
     refined_s = np.array([refined[o.seed].duration_s for o in usable])
     ceiling_s = np.minimum([o.ceiling_s for o in usable], np.minimum(greedy_s, refined_s))
     again_s = np.array([o.again_s for o in usable])
+    if not usable:  # that none of the starts is done both ways is a result, too
+        return {"oracle_n": 0, **dict.fromkeys(UNKNOWN, math.nan)}
+    possible_s = float((greedy_s - ceiling_s).sum())
     return {
         "oracle_n": len(usable),
         "oracle_pct": 100 * float(np.mean(1 - ceiling_s / greedy_s)),
         "oracle_again_pct": 100 * float(np.nanmean(1 - again_s / greedy_s)) if np.isfinite(again_s).any() else np.nan,
         "refined_same_starts_pct": 100 * float(np.mean(1 - refined_s / greedy_s)),
-        "share_of_oracle_pct": 100 * float((greedy_s - refined_s).sum() / (greedy_s - ceiling_s).sum()),
+        "share_of_oracle_pct": 100 * float((greedy_s - refined_s).sum()) / possible_s if possible_s else math.nan,
         "share_of_oracle_ci95": ratio_interval(100 * (greedy_s - refined_s), greedy_s - ceiling_s),
         "oracle_s": float(ceiling_s.mean()),
         "oracle_again_s": _mean(again_s),

@@ -92,6 +92,34 @@ def test_the_interval_of_a_ratio_holds_it_and_narrows_with_more_starts():
     assert narrow[1] - narrow[0] < wide[1] - wide[0]
 
 
+def test_a_ratio_over_few_units_has_no_interval():
+    """A bootstrap of three held the truth in 75 of a hundred cases, and said 95."""
+    rng = np.random.default_rng(2)
+    wholes = rng.uniform(1, 3, 10)
+    assert np.isnan(ratio_interval(0.1 * wholes[:9], wholes[:9])).all()
+    assert np.isfinite(ratio_interval(0.1 * wholes, wholes)).all()
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_ratio_of_which_the_whole_is_often_nothing_has_an_interval():
+    rare = np.array([0.0] * 9 + [2.0])
+    assert ratio_interval(0.5 * rare, rare) == pytest.approx((0.5, 0.5))
+    assert np.isnan(ratio_interval(0.0 * rare, 0.0 * rare)).all()
+
+
+def test_equal_differences_of_durations_have_equal_ranks():
+    """As 10.1 - 9.8 and 5.3 - 5 differ in their last digits."""
+    rng = np.random.default_rng(5)
+    ticks = np.array([1, -1, 3, 3, 3, -2, 1, 1, -1, 2, 4, -3, 3, 1, 0])
+    greedy = np.round(rng.uniform(5, 30, len(ticks)), 1)
+    assert compare(greedy, greedy - 0.1 * ticks).p_wilcoxon == pytest.approx(stats.wilcoxon(ticks).pvalue)
+
+
+def test_the_ranks_of_a_few_equal_differences_are_no_more_significant_than_their_number():
+    assert compare([8.0, 9.0, 10.0], [7.7, 8.7, 9.7]).p_wilcoxon == 0.25
+    assert compare([8.0, 9.0, 10.0], [8.0, 9.0, 10.0]).p_wilcoxon == 1.0
+
+
 def test_p_values_below_the_threshold_are_not_told_apart():
     assert [p_shown(p) for p in (0.0, 9e-54, 0.0099, 0.5)] == ["< 0.001", "< 0.001", 0.01, 0.5]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import json
 from dataclasses import replace
 
@@ -147,6 +148,17 @@ def test_oracle_tells_ceiling_greedy_and_zero_apart():
     row = against_oracle([said], {1: DONE}, {1: replace(DONE, duration_s=9.0)})
     assert row["oracle_pct"] == pytest.approx(20.0)
     assert row["refined_same_starts_pct"] == pytest.approx(10.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_oracle_without_a_start_that_ends_well_both_ways_or_without_a_gain_is_a_result():
+    failed = replace(DONE, achieved=False)
+    row = against_oracle([_judged(1, [failed], failed)], {1: DONE}, {1: DONE})
+    assert row["oracle_n"] == 0
+    assert math.isnan(row["oracle_pct"])
+    row = against_oracle([replace(_judged(1, [DONE], DONE), again_s=11.0)], {1: DONE}, {1: DONE})
+    assert (row["oracle_n"], row["oracle_pct"]) == (1, 0.0)
+    assert math.isnan(row["share_of_oracle_pct"])
 
 
 def test_oracle_chooses_for_the_plan_not_for_subgoals():
