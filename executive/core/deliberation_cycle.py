@@ -45,6 +45,8 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     deliberation = state.deliberation
     if deliberation is None:
         return _with_rest_used(context, state, budget)
+    if _is_too_late(context, state, deliberation):
+        deliberation.settle()
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
@@ -66,9 +68,9 @@ def _with_deliberation(context: Context, state: State) -> State:
     """A new deliberation if none is ongoing and there is no valid decision."""
     task = state.task
     ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
-    idle = task.running is None and task.decision is None
-    if ongoing or state.now_ns < state.halted_until_ns:
+    if (ongoing and not _is_followed(state, state.deliberation)) or state.now_ns < state.halted_until_ns:
         return state
+    idle = task.running is None and task.decision is None
     if not idle:
         if task.decision is None or task.running is None:
             return state
@@ -84,6 +86,22 @@ def _with_deliberation(context: Context, state: State) -> State:
     start = known.values() if known is not None and known.decision.plan is task.plan else {}
     deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
+
+
+def _is_followed(state: State, deliberation: Deliberation | None) -> bool:
+    """Whether the running action follows a decision of this deliberation, which may still improve it."""
+    task = state.task
+    if deliberation is None or task.running is None or task.decision is None:
+        return False
+    return task.decision.number == deliberation.number
+
+
+def _is_too_late(context: Context, state: State, deliberation: Deliberation) -> bool:
+    """Whether no better subgoal would be adopted any more: the budget is worth more for what follows the action."""
+    running = state.task.running
+    if running is None or not _is_followed(state, deliberation):
+        return False
+    return running.elapsed_s(state.now_ns) > context.settings.refine_while_running_s
 
 
 def _source(context: Context, state: State, problem: planning.Problem, number: int) -> PlanSource:

@@ -97,6 +97,11 @@ class Deliberation:
             if self.stage == stage:
                 return
 
+    def settle(self) -> None:
+        """End the search with what it has found."""
+        if self.stage == "refining" and self.decision() is not None:
+            self.stage = "decided"
+
     def pause(self, passed_ns: int) -> None:
         """Let time pass in which the clock of the running action stands still: predictions count from that clock."""
         self._now_ns += passed_ns

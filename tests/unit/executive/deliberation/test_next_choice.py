@@ -25,7 +25,8 @@ PROBLEM = """
 """
 GOAL = "(and (visited a) (visited b) (visited c) (at c))"
 SLOW_MPS = 0.3  # an action that starts faster loses much time: alone, each action would end as fast as it can
-FEW, MANY = 3, 500
+ONE, FEW, MANY = 1, 3, 500
+MOVED_M = 0.5  # more than the tolerance of a slide
 
 
 class HastePunished:
@@ -54,11 +55,12 @@ def context():
     return replace(made, domain=HastyDomain(), models=Models({"slide/duration": HastePunished()}, {}))
 
 
-def driven(context, checks, ticks=120):
-    """The states of the drive, until the third action has begun."""
+def driven(context, checks, ticks=120, moved_at=999):
+    """The states of the drive, until the third action has begun; from tick `moved_at` on the places lie elsewhere."""
     state, x, states = initial_state(context), 0.0, []
     for n in range(1, ticks + 1):
-        given = Inputs((odometry(n * TICK, x, n), driver(n * TICK)), GOAL if n == 1 else "")
+        shift = MOVED_M if n >= moved_at else 0.0
+        given = Inputs((odometry(n * TICK, x, n, shift), driver(n * TICK)), GOAL if n == 1 else "")
         state, _ = step(context, state, n * TICK, given, CheckBudget(checks))
         x += 0.1 * state.command[0]
         states.append(state)
@@ -98,6 +100,20 @@ def test_what_was_searched_for_another_plan_or_place_is_not_used(context):
     with_choice = next(state for state in states if state.next_choice is not None and state.next_choice.values())
     assert with_choice.next_choice.decision.plan is with_choice.task.plan
     assert undecided(with_choice).next_choice is None
+
+
+def test_a_search_whose_result_would_come_too_late_makes_way_for_it(context):
+    states = driven(context, ONE, ticks=60)
+    begun_ns = next(state.now_ns for state in states if state.task.running is not None)
+    prepared = next(state for state in states if state.next_choice is not None)
+    assert (prepared.now_ns - begun_ns) / 1e9 == pytest.approx(context.settings.refine_while_running_s + 0.1)
+    assert not prepared.deliberation.refinement.finished
+
+
+@pytest.mark.parametrize("checks", [ONE, FEW, MANY])
+def test_what_moves_while_the_search_goes_on_is_decided_anew_at_once(context, checks):
+    states = driven(context, checks, ticks=12, moved_at=10)
+    assert [state.deliberations for state in states[8:10]] == [1, 2]
 
 
 def test_two_equal_runs_choose_equally(context):
