@@ -107,7 +107,9 @@ def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> 
 
 def _done(context: Context, state: State, running: Running) -> tuple[State, ActionFinished]:
     finished = finished_message(context, state, state.task.finished, running, ("done", None))
-    task = with_effects(context, replace(after_action(state.task), failures=()), running)
+    # An asserted subgoal is no success of the plan: the action that it was asserted for may fail again and again
+    failures = state.task.failures if running.asserted else ()
+    task = with_effects(context, replace(after_action(state.task), failures=failures), running)
     state = confirmed(context, replace(state, task=task, deliberation=None, coasted=0), running)
     if state.fault is not None:
         state = replace(state, command=at_rest(context.domain.axes, state.command))

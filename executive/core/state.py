@@ -64,7 +64,7 @@ class Task:
     plan: Plan | None = None
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
-    failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since the last success
+    failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since a step of the plan succeeded
     unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them
     running: Running | None = None
     decision: Decision | None = None  # of the last deliberation

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from tailor.executive.core.action_cycle import MAX_FAILURES
 from tailor.executive.core.effects import MAX_UNCONFIRMED
 from tailor.executive.core.modes import Mode
 from tailor.executive.interfaces.action import Control
+from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.messages import ActionFinished
-from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context
+from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context, slide
 from tests.unit.executive.core.test_core import TICK, drive, messages
 
 
@@ -49,6 +51,43 @@ def test_failures_that_each_name_another_value_are_a_fault_in_the_end():
     finished = messages(run, ActionFinished)
     assert len(finished) == len({f.detail for f in finished}) == MAX_FAILURES
     assert run[-1][0].mode is Mode.FAULT
+
+
+class Stuck(LineDomain):
+    """Needs a run-up from behind home, for which a subgoal is asserted, and gives up once it is past home."""
+
+    actions = {
+        "slide": dataclasses.replace(
+            SLIDE,
+            controller=lambda state, now_ns, belief, arguments: (
+                Control(state, (0.0,), "failed", "stuck")
+                if arguments[1] > belief.x > 0.0
+                else slide(state, now_ns, belief, arguments)
+            ),
+            success_model="slide/success",
+            subgoal_action="slide",
+        )
+    }
+
+
+class RunUp:
+    """Success to places behind home, and from there."""
+
+    card = {"sha256": "toy"}
+
+    def probability(self, arguments):
+        start, goal = arguments[:, 0], arguments[:, 1]
+        return np.where(((goal < -0.3) & (goal > -1.0)) | (start < -0.2), 0.999, 0.001)
+
+
+@pytest.mark.promise("P30")
+def test_a_failure_is_the_same_again_after_a_subgoal_that_was_asserted_before_the_action():
+    context = of(Stuck())
+    context = dataclasses.replace(context, models=Models(context.models.durations, {"slide/success": RunUp()}))
+    run = list(drive(context, goal="(visited a)", ticks=400, checks=600))
+    finished = messages(run, ActionFinished)
+    assert [f.outcome for f in finished] == ["done", "failed", "done", "failed"]
+    assert run[-1][0].cause == Cause(Reason.REPEATED_FAILURE, "slide: controller failed: stuck")
 
 
 class Forgetful(LineDomain):
