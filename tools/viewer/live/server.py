@@ -42,7 +42,7 @@ def serving(document: str, broadcast: EventBroadcast, port: int, stop: StopEndpo
     """
     handler = type("Handler", (_Handler,), {"document": document.encode(), "broadcast": broadcast, "stop": stop})
     try:
-        server = ThreadingHTTPServer((ADDRESS, port), handler)
+        server = _Server((ADDRESS, port), handler)
     except OSError as error:
         raise UsageError(f"--port {port}: {error.strerror}, expected a free one (0 finds one)") from error
     server.daemon_threads = True
@@ -54,6 +54,12 @@ def serving(document: str, broadcast: EventBroadcast, port: int, stop: StopEndpo
         broadcast.close()
         server.shutdown()
         server.server_close()
+
+
+class _Server(ThreadingHTTPServer):
+    """Its queue of connections holds what many tabs open at once: the stop button of one must not wait a second."""
+
+    request_queue_size = 64
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -29,6 +29,22 @@ from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support.patience import PATIENCE_S, wait_until
 
 
+def test_many_tabs_connect_at_once_however_busy_the_server_is():
+    with server._Server(("127.0.0.1", 0), server._Handler) as busy:  # it accepts nothing
+        sockets = [socket.socket() for _ in range(40)]
+        for each in sockets:
+            each.settimeout(PATIENCE_S)
+        try:
+            for each in sockets[:6]:
+                each.connect(busy.server_address)
+            for each in sockets[6:]:
+                each.settimeout(0.5)
+                each.connect(busy.server_address)
+        finally:
+            for each in sockets:
+                each.close()
+
+
 def tick(at_s: float) -> Event:
     return Event(at_s, "tick", {"work": 1.0})
 
