@@ -50,6 +50,7 @@ class Arming:
     echo_age_ns: int = 0  # age of the newest command that it echoes, at its arrival; 0: none
     requested_epoch: int = 0  # 0: no request yet
     requested_ns: int = 0
+    requests: int = 0  # so far
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from tailor.executive.interfaces.outlet import Command, at_rest, messages_of
 from tailor.schemas.messages import ArmRequest
 
 REARM_NS = 500_000_000  # a request without an effect is repeated
+LATER_NS, OFTEN = 5_000_000_000, 20  # less often after so many: a driver that gave no leave refuses and counts each
 
 
 def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tuple[State, tuple[Output, ...]]:
@@ -84,10 +85,12 @@ def _arm_request(context: Context, state: State) -> tuple[State, ArmRequest | No
     if driver is None or driver.mode != "disarmed" or not state.task.active:
         return state, None
     first_time = arming.requested_epoch == 0
-    again = arming.requested_epoch == driver.epoch and state.now_ns - arming.requested_ns > REARM_NS
+    pause_ns = REARM_NS if arming.requests < OFTEN else LATER_NS
+    again = arming.requested_epoch == driver.epoch and state.now_ns - arming.requested_ns > pause_ns
     if not (first_time or (again and driver.accepted == 0)):
         return state, None
-    arming = replace(arming, requested_epoch=driver.epoch, requested_ns=state.now_ns)
+    number = arming.requests + 1
+    arming = replace(arming, requested_epoch=driver.epoch, requested_ns=state.now_ns, requests=number)
     request = ArmRequest(arm=True, reset=False, sender=context.sender, epoch=driver.epoch)
     return replace(state, arming=arming), request
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -412,6 +413,17 @@ def test_arming_is_requested_again_only_while_the_same_start_of_the_driver_stays
         state.tick for state, outputs, _ in run for output in outputs if isinstance(output.message, ArmRequest)
     ]
     assert requested == [1, 7, 13]
+
+
+def test_a_driver_that_never_gives_leave_is_asked_less_often_in_the_end():
+    def world(n, given, x):
+        return Inputs((odometry(n * TICK, x, n), driver(n * TICK, "disarmed", accepted=0)), given.goal)
+
+    run = list(drive(line_context(), world=world, ticks=300))
+    asked = [state.tick for state, outputs, _ in run for each in outputs if isinstance(each.message, ArmRequest)]
+    assert {later - earlier for earlier, later in pairwise(asked[:20])} == {6}
+    assert {later - earlier for earlier, later in pairwise(asked[19:])} == {51}
+    assert len(asked) == 23
 
 
 @pytest.mark.parametrize("mode", ["stopped", "estopped"])
