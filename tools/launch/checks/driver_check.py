@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tailor.executive.interfaces.domain import Domain
-from tailor.executive.interfaces.outlet import outlets_of
+from tailor.executive.interfaces.outlet import Outlet, outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.package_errors import raised_text
 from tailor.schemas.parsed_files import read_toml, shown
@@ -123,15 +123,24 @@ def _misread(domain: Domain, driver: DriverSpec) -> Iterator[str]:
         return  # a fault of the package, which its own check names
     for outlet, declared in zip(outlets, driver.all_outlets(), strict=True):
         ranges, parts = [(axis.lower, axis.upper) for axis in outlet.axes], len(outlet.axes) + 2
-        written = tuple(lower + (upper - lower) * (k + 1) / parts for k, (lower, upper) in enumerate(ranges))
-        try:
-            read = command_values(outlet.message(written, 0), declared.axes)
-        except Exception as error:  # code of a package
-            yield f"{outlet.topic}: the domain's message cannot be made: {raised_text(error)}"
-            continue
-        if read != written:
-            said, heard = (", ".join(f"{value:g}" for value in values) or "nothing" for values in (written, read))
-            yield f"{outlet.topic} carries {said} for {', '.join(declared.axes)}, and the driver reads {heard}"
+        within = tuple(lower + (upper - lower) * (k + 1) / parts for k, (lower, upper) in enumerate(ranges))
+        for written in (within, *zip(*ranges, strict=True)):  # also at both ends of all axes
+            if fault := _misreading(outlet, written, declared.axes):
+                yield f"{outlet.topic}{fault}"
+                break
+
+
+def _misreading(outlet: Outlet, written: tuple[float, ...], axes: tuple[str, ...]) -> str:
+    """What the driver reads of a command, if it is another one; empty if it is the same."""
+    try:
+        read = command_values(outlet.message(written, 0), axes)
+    except Exception as error:  # code of a package
+        return f": the domain's message cannot be made: {raised_text(error)}"
+    if read == written:
+        return ""
+    said = ", ".join(f"{value:g}" for value in written)
+    heard = ", ".join(f"{value:g}" if isinstance(value, int | float) else shown(value) for value in read) or "nothing"
+    return f" carries {said} for {', '.join(axes)}, and the driver reads {heard}"
 
 
 def _unfit_rates(domain: Domain, driver: DriverSpec) -> Iterator[str]:

@@ -56,8 +56,13 @@ class _ScenarioFiles:
         """What `draw`, code of the package, raises for an entry that is missing or has a value of another type."""
         draw = part(self.spec, "draw")
         try:
-            start, places, _events = draw(declared, np.random.default_rng(0))
+            drawn = draw(declared, np.random.default_rng(0))
+            if not (isinstance(drawn, tuple | list) and len(drawn) == 3):
+                yield f"draw returned {shown(drawn)}, expected (start, places, events)"
+                return
+            start, places, events = drawn
             values = {**start, **{f"{p}.{q}": v for p, place in places.items() for q, v in place.items()}}
+            values |= {f"event {k}.{name}": each[name] for k, each in enumerate(events) for name in {**each, "at_s": 0}}
             infinite = [name for name, value in values.items() if not math.isfinite(value)]
         except Exception as error:
             yield f"cannot be drawn: {type(error).__name__}: {error}"

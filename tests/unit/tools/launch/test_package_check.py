@@ -10,6 +10,7 @@ from tailor.executive import domains
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
+from tailor.schemas.messages import VelocityCommand
 from tailor.tools.commands.run import executive
 from tailor.tools.launch.checks import package_check, scenario_check
 from tailor.tools.launch.checks.package_check import check_package, faults_of_package
@@ -167,6 +168,13 @@ def test_a_message_that_cannot_be_made_is_a_fault_with_its_line(monkeypatch):
     assert "cmd_vel: the domain's message cannot be made: IndexError: tuple index out of range (test_package" in found
 
 
+def test_a_message_that_lacks_a_number_at_an_end_of_its_range_is_a_fault():
+    domain, proper = without(), domains.load("soccer").message
+    domain.message = lambda command, at: proper(command, at) if command[0] < 0.8 else VelocityCommand(at, None, "x")
+    [found] = faults_of_package(spec_of("soccer"), domain)
+    assert found.endswith(" for v, omega, and the driver reads None, 'x'")
+
+
 def test_faults_come_in_the_order_of_the_package():
     unknown = [f"fly{number}" for number in range(9)]
     found = faults_of_package(spec_of("soccer"), soccer(executables=dict.fromkeys(unknown, "goToPose")))
@@ -215,6 +223,25 @@ def scenarios(tmp_path, monkeypatch):
     for module in (domains, scenario_check):
         monkeypatch.setattr(module, "file", lambda *_: folder)
     return folder, lambda: list(faults_of_package(spec_of("soccer"), domains.load("soccer")))
+
+
+@pytest.mark.parametrize(
+    ("drawn", "fault"),
+    [
+        (None, "draw returned None, expected (start, places, events)"),
+        (({"x": 1.0}, {}), "draw returned ({'x': 1.0}, {}), expected (start, places, events)"),
+        (({"x": 1.0}, {}, ({"x": 2.0},)), "cannot be drawn: KeyError: 'at_s'"),
+        (({"x": 1.0}, {}, ({"at_s": NAN, "x": 2.0},)), "event 0.at_s is drawn as nan, expected a finite number"),
+        (({"x": 1.0}, {}, 3), "cannot be drawn: TypeError: 'int' object is not iterable"),
+        ([{"x": 1.0}, {}, [{"at_s": 1.0, "x": 2.0}]], ""),
+    ],
+)
+def test_each_fault_of_what_is_drawn_is_named(scenarios, monkeypatch, drawn, fault):
+    folder, faults = scenarios
+    monkeypatch.setattr(scenario_check, "part", lambda *_: lambda declared, rng: drawn)
+    (folder / "a.pddl").write_text("(define (problem a) (:domain soccer) (:goal (and)))")
+    (folder / "a.toml").write_text("problem = 'a.pddl'")
+    assert faults() == ([f"{spec_of('soccer').scenarios}/a.toml: {fault}"] if fault else [])
 
 
 def test_scenarios_that_are_missing_are_named(scenarios):
