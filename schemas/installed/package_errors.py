@@ -27,10 +27,11 @@ def blamed_on_package(spec: DomainSpec, what: str) -> Iterator[None]:
 
 def raised_text(error: BaseException, spec: DomainSpec | None = None) -> str:
     """What was raised, and the line that raised it: with a spec, the innermost of its package that it came through."""
-    lines = traceback.extract_tb(error.__traceback__)
+    here = [(line.filename, line.lineno) for line in traceback.extract_tb(error.__traceback__)]
+    lines = getattr(error, "raised_at", here)  # of an error from another process, which has its lines as an attribute
     folders = _folders(spec) if spec is not None else ()
-    line = next((each for each in reversed(lines) if Path(each.filename).parent in folders), lines[-1])
-    return f"{type(error).__name__}: {' '.join(str(error).split())} ({Path(line.filename).name}, line {line.lineno})"
+    file, line = next((each for each in reversed(lines) if Path(each[0]).parent in folders), lines[-1])
+    return f"{type(error).__name__}: {' '.join(str(error).split())} ({Path(file).name}, line {line})"
 
 
 def _folders(spec: DomainSpec) -> set[Path]:

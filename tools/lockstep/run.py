@@ -19,6 +19,7 @@ from tailor.executive.replay import RecordedTick
 from tailor.runtime.budget import ClockBudget
 from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Sample, Subgoals
 from tailor.simnodes.world import World
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.lockstep.driver_link import DriverLink, Transport
 
 CHECKS_PER_TICK = 300  # with which nearly every search ends in its tick; 60 ms of CPU grant 10 to 120
@@ -79,7 +80,13 @@ def run_lockstep(
     Returns:
       Result, actions, subgoals, ground truth and all messages of the run.
     """
-    link = DriverLink(context.domain, world, SENDER, transport)
+    with blamed_on_run(context.domain.name):
+        return _run(context, DriverLink(context.domain, world, SENDER, transport), limit_s, new_budget, on_tick)
+
+
+def _run(
+    context: Context, link: DriverLink, limit_s: float, new_budget: Callable[[], Budget], on_tick: TickObserver | None
+) -> Run:
     run, state = Run(), initial_state(context)
     goal, samples = context.problem.goal_text, _advance(link, 0, run)
     for tick in range(1, int(limit_s * 1e9) // PERIOD_NS):

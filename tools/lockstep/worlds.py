@@ -22,10 +22,12 @@ def make_world(robot: str, scenario: str, seed: int) -> World:
     """
     spec = spec_of_robot(robot)
     name = scenario or domains.scenarios(spec.name)[0]
-    sampled, start = domains.seeded_scenario(spec.name, name, seed)
+    with blamed_on_package(spec, f"scenario {name} of {spec.name} cannot be drawn"):
+        sampled, start = domains.seeded_scenario(spec.name, name, seed)
+        events = events_of(sampled)
     made = part(spec, "body")
     with blamed_on_package(spec, f"{spec.body}: cannot be simulated"):
-        return World(made(), start, seed, events_of(sampled))
+        return World(made(), start, seed, events)
 
 
 def events_of(scenario: Scenario) -> list[Event]:

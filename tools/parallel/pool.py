@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from operator import itemgetter
+from traceback import extract_tb
 from typing import Any, Protocol
 
 from tailor.runtime.processes.parent_death_signal import PR_SET_PDEATHSIG
@@ -72,6 +74,9 @@ def _unless_killed(results: Iterator[Numbered]) -> Iterator[Numbered]:
     except BrokenProcessPool:
         what = "a process of this command was killed, perhaps for lack of memory"
         raise UsageError(f"{what}: fewer --jobs need less; finished parts are kept") from None
+    except Exception as error:
+        _note_lines(error, _lines_in(str(getattr(error.__cause__, "tb", ""))))  # of one that was pickled without it
+        raise
 
 
 @contextmanager
@@ -112,8 +117,13 @@ def in_order(results: Iterable[Numbered]) -> list[Any]:
 
 
 def _numbered(waiting: int, number: int, part: Part, call: tuple[Any, ...]) -> Numbered:
+    """A part's result; what it raises gets the lines that it came through, as `raised_at`."""
     _end_with(waiting)
-    return number, part(*call)
+    try:
+        return number, part(*call)
+    except Exception as error:
+        _note_lines(error, [(line.filename, line.lineno) for line in extract_tb(error.__traceback__)])
+        raise
 
 
 def _end_with(waiting: int) -> None:
@@ -123,3 +133,15 @@ def _end_with(waiting: int) -> None:
     """
     if os.getppid() == waiting:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _note_lines(error: Exception, lines: list[Any]) -> None:
+    """Let an error tell the lines in which it was raised: on its way to another process it loses its traceback."""
+    if lines and not hasattr(error, "raised_at"):
+        with suppress(AttributeError):  # of a class that takes no attributes
+            error.raised_at = lines  # type: ignore[attr-defined]
+
+
+def _lines_in(printed: str) -> list[tuple[str, int]]:
+    """The lines that a printed traceback names."""
+    return [(file, int(line)) for file, line in re.findall(r'^ *File "(.+)", line (\d+)', printed, re.MULTILINE)]

@@ -16,6 +16,7 @@ from tailor.tools.learning import gather_options as options
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.progress import gathered, note, shown
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.lockstep.bodies import check_profile
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
@@ -34,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = arguments.on_policy or arguments.active or arguments.uncertain
     if arguments.on and arguments.zoo:
         arguments.zoo = str(Path(arguments.zoo).resolve())  # workers have another working directory
-    with working_on(arguments.on, Work((name,), arguments.zoo if chosen else None)):
+    with working_on(arguments.on, Work((name,), arguments.zoo if chosen else None)), blamed_on_run(name, True):
         if arguments.uncertain:
             return _uncertain(arguments, name, out)
         if chosen or arguments.recordings:

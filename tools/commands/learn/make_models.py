@@ -17,6 +17,7 @@ from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.making.steps import check, make
 from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.learning.target_zoo import target_zoo
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.parallel.steps import Step, show
 
 EPILOG = """\
@@ -70,7 +71,8 @@ def _making(robot: str, arguments: argparse.Namespace) -> Making:
 def _made(making: Making, zoo: Path, quiet: bool) -> dict[str, Any]:
     """Make and install the models of one robot; seconds of each step that was not done before."""
     seconds: dict[str, float] = {}
-    show(_timed(make(making), seconds), quiet, {}, f"{making.robot}: ")
+    with blamed_on_run(spec_of_robot(making.robot).name, parts_alone=True):
+        show(_timed(make(making), seconds), quiet, {}, f"{making.robot}: ")
     install(making.zoo, zoo, making.robot)
     return {"zoo": str(zoo), "steps_s": {title: round(value, 1) for title, value in seconds.items()}}
 

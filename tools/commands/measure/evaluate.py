@@ -13,6 +13,7 @@ from tailor.tools.evaluations.catalogue import ALL, EVALUATIONS, Chosen, chosen_
 from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.checks.package_check import check_package
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 
@@ -101,7 +102,8 @@ def _is_done(name: str, module: Any, settings: argparse.Namespace) -> bool:
 def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:
     """Run one evaluation; with `all`, a UsageError ends only this one (exit code 2)."""
     try:
-        return int(module.run(settings))
+        with blamed_on_run(settings.domain or domains_of(module)[0], parts_alone=True):
+            return int(module.run(settings))
     except UsageError as error:
         if not everything:
             raise
