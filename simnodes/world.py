@@ -13,6 +13,7 @@ import numpy as np
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import shown
+from tailor.schemas.topics import TOPICS
 from tailor.simnodes.body import STEP_NS, Body, Reading
 
 EXPECTED = "a list of Readings (simnodes/body.py)"
@@ -83,7 +84,7 @@ class World:
 
         Raises:
           ValueError: `duration_ns` is no multiple of STEP_NS.
-          UsageError: The body returned no readings; an empty list is one, None is not.
+          UsageError: The body returned no readings (an empty list is one, None is not), or one that no topic has.
         """
         if duration_ns % STEP_NS:
             raise ValueError(f"duration_ns is {duration_ns}, expected a multiple of {STEP_NS}")
@@ -95,10 +96,21 @@ class World:
             raise UsageError(
                 f"advance of the body of {self.body.robot} returned {shown(readings)}, expected {EXPECTED}"
             )
+        for each in readings:
+            if each.topic not in TOPICS or not isinstance(each.message, TOPICS[each.topic].type):
+                raise UsageError(f"advance of the body of {self.body.robot} returned {_misfit(each)}")
         return list(readings)
 
     def _due_ns(self, begun_ns: int) -> int:
         return begun_ns + round(self._pending[0].at_s * 1e9)
+
+
+def _misfit(reading: Reading) -> str:
+    """Why nobody can publish a reading."""
+    if reading.topic not in TOPICS:
+        return f"a Reading of '{reading.topic}', expected the name of a topic"
+    expected = TOPICS[reading.topic].type.__name__
+    return f"a Reading of {reading.topic} with {shown(reading.message)}, expected a {expected}"
 
 
 def _in_order(events: Sequence[Event]) -> tuple[Event, ...]:

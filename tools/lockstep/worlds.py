@@ -21,7 +21,8 @@ def make_world(robot: str, scenario: str, seed: int) -> World:
       UsageError: Robot or scenario is unknown, or the robot has no body, or none that can be made.
     """
     spec = spec_of_robot(robot)
-    name = scenario or domains.scenarios(spec.name)[0]
+    with blamed_on_package(spec, f"the scenarios of {spec.name} cannot be listed"):
+        name = scenario or domains.scenarios(spec.name)[0]
     with blamed_on_package(spec, f"scenario {name} of {spec.name} cannot be drawn"):
         sampled, start = domains.seeded_scenario(spec.name, name, seed)
         events = events_of(sampled)

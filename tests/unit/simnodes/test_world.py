@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tailor.schemas.errors import UsageError
-from tailor.simnodes.body import STEP_NS
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.simnodes.body import STEP_NS, Reading
 from tailor.simnodes.world import Event, World
 from tests.support.stand_ins.body import FakeBody
 
@@ -80,3 +81,18 @@ def test_a_body_may_have_no_readings():
     body = FakeBody()
     body.advance = lambda duration_ns: ()
     assert World(body, {}, 3).advance(STEP_NS) == []
+
+
+@pytest.mark.parametrize(
+    ("topic", "message", "fault"),
+    [
+        ("odometer", Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0), "a Reading of 'odometer', expected the name of a topic"),
+        ("odom", 3.0, "a Reading of odom with 3.0, expected a Odometry"),
+        ("odom", PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0), r"a Reading of odom with PoseE.*, expected a Odometry"),
+    ],
+)
+def test_a_reading_that_no_topic_has_is_refused(topic, message, fault):
+    world = make_world()
+    world.body.advance = lambda duration_ns: [Reading(topic, message, 0)]
+    with pytest.raises(UsageError, match=f"^advance of the body of .* returned {fault}$"):
+        world.advance(STEP_NS)

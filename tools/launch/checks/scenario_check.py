@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from tailor.executive import domains, planning
+from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, part
+from tailor.schemas.installed.package_errors import raised_text
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.parsed_files import shown
 
@@ -28,12 +30,31 @@ def faults_of_scenarios(spec: DomainSpec, pddl: planning.Domain | None) -> Itera
             yield from found
             return
     try:
-        known = domains.scenarios(spec.name)
+        known: Any = domains.scenarios(spec.name)
     except UsageError as error:
         yield str(error)
         return
+    except Exception as error:  # code of a package's generator
+        yield f"{spec.generator}: scenarios cannot be listed: {raised_text(error, spec)}"
+        return
     if not known:
         yield f"{spec.generator or spec.scenarios}: there is no scenario"
+    elif spec.generator:
+        yield from (f"{spec.generator}: {fault}" for fault in _faults_of_generator(spec, known))
+
+
+def _faults_of_generator(spec: DomainSpec, known: Any) -> Iterator[str]:
+    """What a generator returns in place of names, and of its first scenario."""
+    if not isinstance(known, list | tuple) or not all(isinstance(name, str) for name in known):
+        yield f"scenarios returned {shown(known)}, expected a list of names"
+        return
+    try:
+        drawn = part(spec, "generator").load_scenario(known[0], np.random.default_rng(0))
+    except Exception as error:
+        yield f"{known[0]} cannot be drawn: {raised_text(error, spec)}"
+        return
+    if not (isinstance(drawn, tuple | list) and len(drawn) == 2 and isinstance(drawn[0], Scenario)):
+        yield f"load_scenario returned {shown(drawn)}, expected (Scenario, start)"
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.executive.actions.go_to_pose import GoToPose
+from tailor.executive.interfaces.domain import Scenario
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
 from tailor.schemas.messages import VelocityCommand
@@ -242,6 +243,45 @@ def test_each_fault_of_what_is_drawn_is_named(scenarios, monkeypatch, drawn, fau
     (folder / "a.pddl").write_text("(define (problem a) (:domain soccer) (:goal (and)))")
     (folder / "a.toml").write_text("problem = 'a.pddl'")
     assert faults() == ([f"{spec_of('soccer').scenarios}/a.toml: {fault}"] if fault else [])
+
+
+PROPER = Scenario("a", "(define (problem a) (:domain soccer) (:goal (and)))", {})
+
+
+@pytest.mark.parametrize(
+    ("names", "drawn", "fault"),
+    [
+        (None, None, "there is no scenario"),
+        ("tour", None, "scenarios returned 'tour', expected a list of names"),
+        ([1], None, "scenarios returned [1], expected a list of names"),
+        (["tour"], None, "load_scenario returned None, expected (Scenario, start)"),
+        (["tour"], (PROPER,), "load_scenario returned (Scenario("),
+        (["tour"], 1 / 3, "load_scenario returned 0.333"),
+        (["tour"], (PROPER, {"x": 1.0}), ""),
+    ],
+)
+def test_each_fault_of_a_generator_is_named(monkeypatch, names, drawn, fault):
+    spec = dataclasses.replace(spec_of("soccer"), draw="", generator="ours.scenarios")
+    made = SimpleNamespace(scenarios=lambda: names, load_scenario=lambda name, rng: drawn)
+    monkeypatch.setattr(domains, "spec_of", lambda name: spec)
+    for module in (domains, scenario_check):
+        monkeypatch.setattr(module, "part", lambda *_: made)
+    found = list(scenario_check.faults_of_scenarios(spec, None))
+    assert len(found) == bool(fault)
+    assert all(each.startswith(f"ours.scenarios: {fault}") for each in found), found
+
+
+def test_a_generator_that_raises_or_lacks_a_function_is_named(monkeypatch):
+    spec = dataclasses.replace(spec_of("soccer"), draw="", generator="ours.scenarios")
+    monkeypatch.setattr(domains, "spec_of", lambda name: spec)
+    made = SimpleNamespace()
+    for module in (domains, scenario_check):
+        monkeypatch.setattr(module, "part", lambda *_: made)
+    [found] = scenario_check.faults_of_scenarios(spec, None)
+    assert "ours.scenarios: scenarios cannot be listed: AttributeError: " in found
+    made.scenarios = lambda: ["tour"]
+    [found] = scenario_check.faults_of_scenarios(spec, None)
+    assert "ours.scenarios: tour cannot be drawn: AttributeError: " in found
 
 
 def test_scenarios_that_are_missing_are_named(scenarios):
