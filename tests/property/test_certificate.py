@@ -176,7 +176,7 @@ def test_proof_ends_when_its_checks_are_used_up():
 @pytest.mark.parametrize("checks", [7, 300])
 def test_an_abandoned_proof_is_freed_without_a_collection(checks):
     with gc_disabled():
-        proof = new_proof("two places", 0)
+        proof = new_proof("two places", 1)  # ends by itself within 300 checks
         proof.advance(CheckBudget(checks))
         held = weakref.ref(proof._proof)
         del proof
