@@ -17,6 +17,7 @@ from tailor.schemas.installed.source_text import content_sha256
 OURS = "tailor"
 RUNS_ACTIONS = "tailor.tools.lockstep.action_run"
 DECLARATIONS = ("tailor.schemas.", "tailor.executive.interfaces.")  # types without behaviour of their own
+BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")  # fields with the statements of a statement
 DATA = (".toml", ".xml")  # beside the body: axes and limits of its driver, its scene
 
 
@@ -56,13 +57,23 @@ def _imported(starts: Iterable[str]) -> dict[str, Path]:
 def _imports(module: str, path: Path) -> Iterator[str]:
     """Dotted names that a module imports, wherever in its text; of `from a import b` both a and a.b."""
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_bytes())):
+    for node in _statements(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             origin = resolve_name("." * node.level + (node.module or ""), package)
             yield from (f"{origin}.{alias.name}" for alias in node.names)
             yield origin
+
+
+def _statements(tree: ast.Module) -> Iterator[ast.AST]:
+    """The module and all its statements, but no expressions: they hold no import, and are most of the tree."""
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        for field in BLOCKS:
+            waiting.extend(getattr(node, field, ()))
 
 
 def _file_of(module: str) -> Path | None:

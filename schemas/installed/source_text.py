@@ -48,14 +48,16 @@ def code_text(source: str) -> str:
 
 
 def _text(node: object) -> str:
-    match node:
-        case ast.AST():
-            fields = (f"{name}={_text(value)}" for name, value in ast.iter_fields(node) if value not in (None, []))
-            return f"{type(node).__name__}({','.join(fields)})"
-        case list():
-            return f"[{','.join(_text(item) for item in node if not _is_docstring(item))}]"
-        case _:
-            return repr(node)
+    if isinstance(node, ast.AST):  # without `match` and generators: twice as fast, at each start
+        fields = [
+            f"{name}={_text(value)}"
+            for name in node._fields
+            if (value := getattr(node, name, None)) is not None and value != []
+        ]
+        return f"{type(node).__name__}({','.join(fields)})"
+    if isinstance(node, list):
+        return f"[{','.join([_text(item) for item in node if not _is_docstring(item)])}]"
+    return repr(node)
 
 
 def _is_docstring(node: object) -> bool:

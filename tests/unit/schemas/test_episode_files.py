@@ -6,6 +6,7 @@ import pytest
 
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source_text import content_sha256
+from tailor.schemas.packages.spec import DomainSpec
 
 MODULE = 'LIMIT = 0.5  # metres\n\n\ndef slow(v: float) -> float:\n    """Half."""\n    return LIMIT * v\n'
 SAME = '"""Limits."""\n\nLIMIT = 0.5\n\ndef slow(\n    v: float,\n) -> float:\n    return (LIMIT * v)\n'
@@ -49,8 +50,6 @@ def test_controllers_belief_body_and_sampler_determine_episodes() -> None:
 
 def test_a_package_outside_of_tailor_is_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also through relative imports, and without being imported."""
-    from tailor.schemas.packages.spec import DomainSpec
-
     package = tmp_path / "cart_h5"
     package.mkdir()
     (package / "__init__.py").write_text("raise RuntimeError('is not to be imported')\n")
@@ -66,3 +65,31 @@ def test_a_package_outside_of_tailor_is_followed(tmp_path: Path, monkeypatch: py
     }  # fmt: skip
     (package / "limits.py").write_text("FASTEST_MPS = 1.0\n")
     assert {name for name, value in episode_files("cart").items() if value != files[name]} == {"cart_h5/limits.py"}
+
+
+IMPORTS = {
+    "function": "def make():\n    import {}",
+    "class": "class Body:\n    import {}",
+    "if": "if True:\n    pass\nelif False:\n    pass\nelse:\n    import {}",
+    "loop": "for _ in ():\n    import {}",
+    "after a loop": "while False:\n    pass\nelse:\n    import {}",
+    "with": "with open('a'):\n    import {}",
+    "try": "try:\n    import {}\nfinally:\n    pass",
+    "except": "try:\n    pass\nexcept ValueError:\n    import {}",
+    "finally": "try:\n    pass\nfinally:\n    import {}",
+    "case": "match 1:\n    case 1:\n        import {}",
+    "behind a semicolon": "a = 1; import {}",
+}
+
+
+@pytest.mark.parametrize("where", IMPORTS)
+def test_an_import_in_any_block_is_followed(where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "blocks_h5"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "cart.py").write_text(IMPORTS[where].format("blocks_h5.limits"))
+    (package / "limits.py").write_text("FASTEST_MPS = 2.0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    spec = DomainSpec("cart", "cart", "blocks_h5.cart:make")
+    monkeypatch.setattr("tailor.schemas.installed.episode_files.spec_of", lambda _: spec)
+    assert "blocks_h5/limits.py" in episode_files("cart")
