@@ -37,7 +37,7 @@ class Journal:
         if self._path.exists():
             text = self._path.read_text(errors="replace")
             if text and not text.endswith("\n"):
-                self._path.write_text(text + "\n")  # ends a truncated line
+                self._write("\n")  # ends a truncated line
             for line in text.splitlines():
                 outcome = _read(line)
                 if outcome is not None:
@@ -45,9 +45,13 @@ class Journal:
 
     def note(self, outcome: Outcome) -> None:
         """Store an outcome."""
+        self._write(json.dumps(dataclasses.asdict(outcome)) + "\n")
+
+    def _write(self, text: str) -> None:
+        """Append to the file: what is in it stays, also if the disk is full or another command writes there, too."""
         if self._path is not None:
             with self._path.open("a") as file:
-                file.write(json.dumps(dataclasses.asdict(outcome)) + "\n")
+                file.write(text)
 
 
 def _read(line: str) -> Outcome | None:

@@ -52,12 +52,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if every row reaches the targets."""
     domain = arguments.domain or DOMAINS[0]
-    scenarios = arguments.scenarios or SCENARIOS[domain]
+    scenarios = list(dict.fromkeys(arguments.scenarios or SCENARIOS[domain]))
+    unknown = [scenario for scenario in scenarios if scenario not in SCENARIOS[domain]]
+    if unknown:  # before the runs of the others
+        raise UsageError(f"--scenarios {unknown[0]}: expected some of: {', '.join(SCENARIOS[domain])}")
     seeds = seeds_of(domain, arguments)
     rows = []
     for scenario in scenarios:
-        if scenario not in SCENARIOS[domain]:
-            raise UsageError(f"--scenarios {scenario}: expected some of: {', '.join(SCENARIOS[domain])}")
         task = Task(domain, scenario, zoo=arguments.zoo, tick_ms=arguments.tick_ms)
         starts = seeds.starts(arguments.episodes)
         found = run_all(task, variants(), starts, arguments.jobs, arguments.store, scenario)

@@ -10,12 +10,12 @@ import numpy as np
 
 from tailor.models.episodes.examples import duration_examples
 from tailor.models.export.publishing import leaves
-from tailor.models.features.planar import projective
+from tailor.models.features.features import FeatureSpace
 from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh, weka
-from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
+from tailor.tools.evaluations.models.learned import configure_learned, configure_train, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 
@@ -37,20 +37,20 @@ def run(arguments: argparse.Namespace) -> int:
       UsageError: No such robot or action, or no episode of one finished.
     """
     arguments = seeded(arguments)
-    rows = [row for action in arguments.actions for row in _rows(action, arguments)]
+    spaces = {action: feature_space_of(arguments.robot, action) for action in arguments.actions}
+    rows = [row for action, space in spaces.items() for row in _rows(action, space, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
     report = Report("duration-learners", "Duration learners", rows, remarks, {}, arguments.provenance)
     publish_report(report, arguments.json, arguments.report)
     return 0
 
 
-def _rows(action: str, arguments: argparse.Namespace) -> list[dict[str, Any]]:
+def _rows(action: str, space: FeatureSpace, arguments: argparse.Namespace) -> list[dict[str, Any]]:
     more = arguments.seed, arguments.jobs, arguments.store
     gathered = fresh.training(arguments.robot, action, arguments.train, *more)
     train = duration_examples(fresh.finished(action, gathered), arguments.ticks)
     unseen = fresh.evaluation(arguments.robot, action, arguments.episodes, *more)
     test = duration_examples(fresh.finished(action, unseen), 1)
-    space = projective
     rows = []
     for name in tracked(list(learners.DURATION_LEARNERS), f"{action}: learners"):
         started = time.perf_counter()

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from tailor.models.episodes.examples import success_examples
-from tailor.models.features.planar import projective
 from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
 from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.models import fresh, weka
-from tailor.tools.evaluations.models.learned import configure_learned, configure_train, seeded
+from tailor.tools.evaluations.models.learned import configure_learned, configure_train, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 
@@ -29,12 +28,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; exit code 0."""
     arguments = seeded(arguments)
     common = arguments.robot, arguments.action
+    space = feature_space_of(*common)
     more = arguments.seed, arguments.jobs, arguments.store
     train = success_examples(fresh.training(*common, arguments.train, *more).episodes, 1)
     test = success_examples(fresh.evaluation(*common, arguments.episodes, *more).episodes, 1)
     if len(np.unique(train.targets)) < 2:
         raise UsageError(f"{arguments.action}: all training episodes ended alike, expected some failures to learn from")
-    space = projective
     observed = test.targets > 0.5
     rows = []
     for name in tracked(list(learners.SUCCESS_LEARNERS), "learners"):

@@ -10,11 +10,10 @@ import numpy as np
 
 from tailor.models.episodes.examples import Examples, duration_examples
 from tailor.models.features.planar import projective, relative
-from tailor.models.features.spaces import feature_space
 from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
-from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, seeded
+from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 
@@ -37,13 +36,13 @@ def run(arguments: argparse.Namespace) -> int:
     """
     arguments = seeded(arguments)
     common = arguments.robot, arguments.action
+    spaces = {name: feature_space_of(*common, name) for name in ORDER}  # before any episode is gathered
     more = arguments.seed, arguments.jobs, arguments.store
     gathered = fresh.training(*common, PAPER_EPISODES, *more), fresh.evaluation(*common, arguments.episodes, *more)
     finished = [fresh.finished(arguments.action, data) for data in gathered]
     train, test = (duration_examples(some, n_i) for some, n_i in zip(finished, (N_I, 1), strict=True))
     rows: list[dict[str, Any]] = []
-    for name in tracked(ORDER, "feature spaces"):
-        space = feature_space(name)
+    for name, space in tracked(list(spaces.items()), "feature spaces"):
         learner = fit("duration", arguments.learner, train, space, arguments.seed)
         off = np.abs(learner.predict(space(test.arguments)) - test.targets)
         mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))

@@ -12,13 +12,14 @@ import numpy as np
 
 from tailor.models.episodes.episodes import Episode, merge, read_data_set
 from tailor.models.episodes.examples import duration_examples, split
-from tailor.models.features.planar import projective
+from tailor.models.episodes.manifest import read_manifest
+from tailor.models.features.features import FeatureSpace
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_EPISODES
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.models import fresh
-from tailor.tools.evaluations.models.learned import configure_learned, seeded
+from tailor.tools.evaluations.models.learned import configure_learned, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.learning.gathering import random_episodes
@@ -44,12 +45,15 @@ def run(arguments: argparse.Namespace) -> int:
     domain = random_episodes.domain_of(arguments.robot)
     runs = arguments.robot, arguments.scenarios, arguments.episodes
     where = arguments.zoo, arguments.jobs, arguments.store
+    spaces = {action: feature_space_of(arguments.robot, action) for action in modelled_actions(domain)}
+    for action in spaces:
+        read_manifest(_random(action, arguments))  # raises before hours of runs, not after
     first = 1000 + arguments.seed % 1_000_000  # one round to learn from, and one to judge by
     folders = [fresh.chosen(*runs, seed, *where) for seed in (first, first + 1)]
     rows = [
         row
-        for action in tracked(list(modelled_actions(domain)), "actions")
-        for row in _rows(action, folders, arguments)
+        for action, space in tracked(list(spaces.items()), "actions")
+        for row in _rows(action, space, folders, arguments)
     ]
     remarks = [
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
@@ -60,8 +64,15 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -> list[dict[str, Any]]:
-    random = read_data_set((arguments.data or Path("data") / arguments.robot) / action)
+def _random(action: str, arguments: argparse.Namespace) -> Path:
+    """Folder of an action's random episodes."""
+    return Path(arguments.data or Path("data") / arguments.robot) / action
+
+
+def _rows(
+    action: str, space: FeatureSpace, folders: Sequence[Path], arguments: argparse.Namespace
+) -> list[dict[str, Any]]:
+    random = read_data_set(_random(action, arguments))
     chosen, later = (read_data_set(folder / action) for folder in folders)
     kept, apart = split(np.arange(len(random.episodes)), 0.25, np.random.default_rng(arguments.seed))
     known = [random.episodes[k] for k in kept]
@@ -73,7 +84,7 @@ def _rows(action: str, folders: Sequence[Path], arguments: argparse.Namespace) -
     rows = []
     for name, episodes, apart_chosen in kinds:
         judges = _Judges(unseen, apart_chosen, later.episodes)
-        figures = _judged([e for e in episodes if e.finished], judges, arguments)
+        figures = _judged([e for e in episodes if e.finished], judges, space, arguments)
         rows.append({"action": action, "training_data": name, "episodes": len(episodes), **figures})
     return rows
 
@@ -87,20 +98,21 @@ class _Judges:
     fresh: Sequence[Episode]  # of a round of its own
 
 
-def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Namespace) -> dict[str, Any]:
+def _judged(
+    episodes: Sequence[Episode], judges: _Judges, space: FeatureSpace, arguments: argparse.Namespace
+) -> dict[str, Any]:
     """Errors on random episodes and on those of the optimiser's choices, and what intervals hold before and after."""
-    space = projective
     model = fit("duration", "bag", duration_examples(episodes, arguments.ticks), space, arguments.seed)
     figures: dict[str, Any] = {}
-    before = scores.interval_factor(*_errors(model, judges.random), LEVEL)
+    before = scores.interval_factor(*_errors(model, judges.random, space), LEVEL)
     for name, some in (("random", judges.random), ("policy", judges.fresh)):
-        off, spread = _errors(model, some)
+        off, spread = _errors(model, some, space)
         mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(arguments.seed))
         figures |= {f"{name}_mae_s": mae, f"{name}_ci95": ci, f"{name}_bias_s": float(off.mean())}
         figures[f"{name}_coverage_pct"] = scores.coverage(off, spread, before)
     enough = len(judges.held) >= MIN_EPISODES  # as in `tailor train`: fewer say little about a tenth of them
-    after = scores.interval_factor(*_errors(model, judges.held), LEVEL) if enough else before
-    figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh), after)
+    after = scores.interval_factor(*_errors(model, judges.held, space), LEVEL) if enough else before
+    figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh, space), after)
     return {
         **figures,
         "factor": before,
@@ -109,9 +121,8 @@ def _judged(episodes: Sequence[Episode], judges: _Judges, arguments: argparse.Na
     }
 
 
-def _errors(model: Any, episodes: Sequence[Episode]) -> tuple[Any, Any]:
+def _errors(model: Any, episodes: Sequence[Episode], space: FeatureSpace) -> tuple[Any, Any]:
     """Predicted minus observed seconds, and the model's spread, at the first ticks."""
-    space = projective
     rows = duration_examples([e for e in episodes if e.finished], 1)
     mean, spread = model.predict_with_std(space(rows.arguments))
     return mean - rows.targets, spread

@@ -84,7 +84,8 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     """Evaluate and publish the report; 0 if every row `is_better`."""
     named = preset or Preset()
     of_oracle = {"points": arguments.points or POINTS, "oracle_runs": arguments.oracle_runs or ORACLE_RUNS}
-    arguments = argparse.Namespace(**{**vars(arguments), **of_oracle})
+    horizons = list(dict.fromkeys(arguments.horizon))  # one that is named twice would be run twice
+    arguments = argparse.Namespace(**{**vars(arguments), **of_oracle, "horizon": horizons})
     domain, scenarios = _scenarios(arguments, named)
     _refuse_ignored(arguments)
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from tailor.models.episodes.episodes import DataSet, Episode
+from tailor.models.training import learners
+from tailor.models.trees.model_tree import ModelTreeRegressor
+from tailor.tools.evaluations.assertion import assertion
 from tailor.tools.evaluations.models import floors, fresh, model_rows, table2
 from tailor.tools.evaluations.models.model_rows import duration_columns
 from tailor.tools.figures.learned_models import reports
@@ -161,3 +164,37 @@ def test_episodes_of_one_run_count_as_one_unit_of_the_errors_interval():
     assert many["mae_ci95"] == pytest.approx(one["mae_ci95"])
     alone = duration_columns(models, "go/duration", DataSet({"arguments": []}, tuple(often), ""), 1)["mae_ci95"]
     assert alone[1] - alone[0] < 0.5 * (many["mae_ci95"][1] - many["mae_ci95"][0])
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("duration-learners", "--actions", "goToPose", "fly"), "no action 'fly' in soccer"),
+        (("on-policy", "--data", "none"), "none/approachBall: no manifest.json, expected a data set"),
+        (("assertion", "--scenarios", "opponents", "chess"), "--scenarios chess: expected some of: opponents, "),
+        (("feature-spaces", "--robot", "powercube", "--action", "reach"), "expected x y phi v xg yg phig vg by"),
+    ],
+)
+def test_what_an_evaluation_lacks_is_found_before_it_runs(words, expected, monkeypatch, capsys, tmp_path):
+    def run(*_, **__):
+        raise AssertionError("hours of runs")
+
+    for made in ("training", "evaluation", "chosen"):
+        monkeypatch.setattr(fresh, made, run)
+    monkeypatch.setattr(assertion, "run_all", run)
+    assert main(["evaluate", *words, "--store", str(tmp_path)]) == 2
+    assert expected in capsys.readouterr().err
+
+
+def test_learners_of_an_arm_are_compared_on_features_of_joints(monkeypatch, capsys, tmp_path):
+    """Those of poses take no joints: it ended in a traceback after all episodes."""
+    rng = np.random.default_rng(3)
+    ticks = [np.array([row]) for row in rng.uniform(-1, 1, (60, 10))]
+    episodes = tuple(Episode(k, row[0], row, 1 + abs(row[0, 0] - row[0, 4]), True, "") for k, row in enumerate(ticks))
+    for stream in ("training", "evaluation"):
+        monkeypatch.setattr(fresh, stream, lambda *_: DataSet({}, episodes, ""))
+    monkeypatch.setattr(learners, "DURATION_LEARNERS", {"linear": lambda _: ModelTreeRegressor("linear")})
+    words = ["evaluate", "duration-learners", "--robot", "powercube", "--actions", "reach", "--store", str(tmp_path)]
+    assert main([*words, "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert (row["action"], row["learner"]) == ("reach", "linear")

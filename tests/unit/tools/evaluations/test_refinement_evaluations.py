@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import math
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -110,6 +110,31 @@ def test_a_damaged_line_costs_its_own_episode_and_no_other(tmp_path, damage):
     path = next(tmp_path.iterdir())
     path.write_bytes(damage + path.read_bytes())
     assert Journal(tmp_path, task, variant, ["a"]).known == {1: DONE}
+
+
+def test_a_truncated_line_is_ended_without_writing_the_others_anew(tmp_path, monkeypatch):
+    """A full disk or a kill would lose them, and another command may just write there, too."""
+    task, variant = Task("soccer", "approach-dribble"), Variant("h1")
+    Journal(tmp_path, task, variant, ["a"]).note(DONE)
+    path = next(tmp_path.iterdir())
+    path.open("a").write('{"seed": 2, "vari')
+    whole, before = path.stat().st_ino, path.read_bytes()
+
+    def full(*_, **__):
+        path.write_bytes(b"")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(type(path), "write_text", full)
+    Journal(tmp_path, task, variant, ["a"])
+    assert (path.stat().st_ino, path.read_bytes()) == (whole, before + b"\n")
+
+
+def test_a_horizon_that_is_named_twice_is_run_once(tmp_path, monkeypatch, capsys):
+    seen = []
+    monkeypatch.setattr(refinement, "rows_of", lambda *settings: seen.append(settings[-1].horizon) or ([], {}))
+    words = ["evaluate", "refinement", "--domain", "arm", "--scenario", "letter-I", "--horizon", "3", "2", "3"]
+    assert main([*words, "--store", str(tmp_path)]) == 0
+    assert seen == [[3, 2]]
 
 
 def test_other_models_or_settings_are_other_episodes(tmp_path):
