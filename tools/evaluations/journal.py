@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from tailor.schemas.errors import UsageError
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 
@@ -48,10 +49,19 @@ class Journal:
         self._write(json.dumps(dataclasses.asdict(outcome)) + "\n")
 
     def _write(self, text: str) -> None:
-        """Append to the file: what is in it stays, also if the disk is full or another command writes there, too."""
-        if self._path is not None:
+        """Append to the file: what is in it stays, also if the disk is full or another command writes there, too.
+
+        Raises:
+          UsageError: It cannot be written; the error of a full disk names no file.
+        """
+        if self._path is None:
+            return
+        try:
             with self._path.open("a") as file:
                 file.write(text)
+        except OSError as error:
+            expected = "expected a file that can be written; finished runs are kept"
+            raise UsageError(f"{self._path}: {error.strerror}, {expected}") from None
 
 
 def _read(line: str) -> Outcome | None:

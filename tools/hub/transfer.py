@@ -5,6 +5,7 @@ Everything is written into a temporary folder first and then moved; whoever inte
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -27,6 +28,8 @@ from tailor.tools.hub.fetching import fetched
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
 from tailor.tools.hub.place import Place
 from tailor.tools.learning.target_zoo import target_zoo
+
+NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:
@@ -109,6 +112,9 @@ def _temporary_beside(target: Path) -> Iterator[Path]:
     """A folder on the same disk as a target, from which moving is one step; removed at the end.
 
     So are those above it that were made for it, unless something has been moved into them.
+
+    Raises:
+      UsageError: The disk is full. Copying names the file that it reads, writing none.
     """
     made = [parent for parent in target.parents if not parent.exists()]
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -116,6 +122,10 @@ def _temporary_beside(target: Path) -> Iterator[Path]:
     folder.chmod(0o755)
     try:
         yield folder
+    except OSError as error:
+        if error.errno not in NO_SPACE:
+            raise
+        raise UsageError(f"{target.parent}: {error.strerror}, expected space for what is written there") from None
     finally:
         shutil.rmtree(folder, ignore_errors=True)
         for parent in made:

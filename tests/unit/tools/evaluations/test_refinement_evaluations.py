@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -127,6 +128,13 @@ def test_a_truncated_line_is_ended_without_writing_the_others_anew(tmp_path, mon
     monkeypatch.setattr(type(path), "write_text", full)
     Journal(tmp_path, task, variant, ["a"])
     assert (path.stat().st_ino, path.read_bytes()) == (whole, before + b"\n")
+
+
+def test_a_full_disk_is_reported_with_the_file_of_the_store():
+    journal = Journal(None, Task("soccer", "approach-dribble"), Variant("h1"), ["a"])
+    journal._path = Path("/dev/full")
+    with pytest.raises(UsageError, match="^/dev/full: No space left on device, expected a file that can be written"):
+        journal.note(DONE)
 
 
 def test_a_horizon_that_is_named_twice_is_run_once(tmp_path, monkeypatch, capsys):

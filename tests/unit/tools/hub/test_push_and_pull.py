@@ -1,5 +1,6 @@
 """Models and data sets go to a hub or a folder and come back unchanged; what is damaged or in the way is refused."""
 
+import errno
 import filecmp
 import json
 import os
@@ -184,6 +185,28 @@ def test_an_interrupted_pull_leaves_what_was_there(tmp_path, monkeypatch):
     assert main(["models", "pull", "--data", "mine", "--from", "./pushed", "--replace"]) == 130
     assert (tmp_path / "mine" / "go" / "part-00001.parquet").read_bytes() == b"mine"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["data", "mine", "pushed"]
+
+
+@pytest.mark.parametrize("pulling", [False, True])
+def test_a_full_disk_is_named_and_not_the_file_that_is_read(tmp_path, monkeypatch, capsys, pulling):
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "data")
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+
+    def full(source, *_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device", str(source))
+
+    monkeypatch.setattr(shutil, "copyfile", full)
+    words = (
+        ("pull", "--data", "there/mine", "--from", "./pushed")
+        if pulling
+        else ("push", "--data", "data", "--to", "./there/mine")
+    )
+    assert (
+        refused(capsys, *words)
+        == "tailor models: there: No space left on device, expected space for what is written there\n"
+    )
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["data", "pushed"]
 
 
 def test_a_swap_that_was_killed_is_completed_by_the_next_one(tmp_path):
