@@ -133,7 +133,7 @@ def test_a_truncated_line_is_ended_without_writing_the_others_anew(tmp_path, mon
 def test_a_full_disk_is_reported_with_the_file_of_the_store():
     journal = Journal(None, Task("soccer", "approach-dribble"), Variant("h1"), ["a"])
     journal._path = Path("/dev/full")
-    with pytest.raises(UsageError, match="^/dev/full: No space left on device, expected a file that can be written"):
+    with pytest.raises(UsageError, match=r"^/dev/full: No space left on device, expected a file that can be written"):
         journal.note(DONE)
 
 
