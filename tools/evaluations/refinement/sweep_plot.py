@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.refinement.sweep import Array, Sweep
-from tailor.tools.figures.paths import draw_side_by_side
+from tailor.tools.figures.paths import draw_side_by_side, size_in
 from tailor.tools.figures.signed_degrees import count_both_ways
 from tailor.tools.figures.track import Track
 
@@ -27,7 +27,13 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
       tracks: Runs at three angles of it.
       path: Where to; its folder is made.
     """
-    figure = Figure(figsize=(14, 9.6), layout="constrained")
+    with whole_output(path) as whole:
+        figure_of(sweep, tracks).savefig(whole, dpi=110)
+
+
+def figure_of(sweep: Sweep, tracks: Sequence[Track]) -> Figure:
+    """The polar plots above the runs, each of which has room for its legend."""
+    figure = Figure(figsize=(size_in(tracks)[0], 9.6), layout="constrained")
     parts: Any = figure.subfigures(2, 1, height_ratios=(1.1, 1))
     top, bottom = parts
     polar = top.subplots(1, 3, subplot_kw={"projection": "polar"})
@@ -37,8 +43,7 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
     top.legend(*polar[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize="small")
     top.suptitle(f"seconds over the heading at the ball; speed there {sweep.v:.2f} m/s; start {sweep.seed}")
     draw_side_by_side(bottom.subplots(1, len(tracks)), tracks)
-    with whole_output(path) as whole:
-        figure.savefig(whole, dpi=110)
+    return figure
 
 
 def _draw(axis: Any, sweep: Sweep, number: int) -> None:

@@ -19,7 +19,7 @@ from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.refinement import figure11
 from tailor.tools.evaluations.refinement.figure1 import dribble_s, handover_mps, path_m, slow_s, until_ball_s
 from tailor.tools.evaluations.refinement.sweep import sweep_of
-from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
+from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep, figure_of
 from tailor.tools.evaluations.traced_runs import trace_run
 from tailor.tools.figures.track import Track, TrackPoint
 from tests.unit.tools.evaluations.test_refinement_evaluations import DONE
@@ -104,6 +104,11 @@ def test_an_angle_that_is_forced_is_the_one_that_is_taken(tmp_path):
     sweep = sweep_of(1, np.array([-1.0, 1.0]), 0.2, [[watched.outcome]] * 2, 0.0, 0.0)
     draw_sweep(sweep, [watched.track] * 3, tmp_path / "sweep.png")
     assert (tmp_path / "sweep.png").stat().st_size > 10_000
+    figure = figure_of(sweep, [watched.track] * 3)
+    figure.draw_without_rendering()
+    legends = [axis.get_legend().get_window_extent() for axis in figure.subfigs[1].axes]
+    sides = [0.0, *(side for legend in legends for side in (legend.x0, legend.x1)), figure.bbox.x1]
+    assert sides == sorted(sides), "legends lie over one another, or beyond the picture"
 
 
 def test_other_noise_is_another_run_from_the_same_start():
