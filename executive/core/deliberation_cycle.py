@@ -66,19 +66,22 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
 
 def _with_deliberation(context: Context, state: State) -> State:
     """A new deliberation if none is ongoing and there is no valid decision."""
-    task = state.task
-    ongoing = state.deliberation is not None and state.deliberation.stage not in ("decided", "failed")
-    if (ongoing and not _is_followed(state, state.deliberation)) or state.now_ns < state.halted_until_ns:
+    task, ongoing = state.task, state.deliberation
+    if ongoing is not None and ongoing.stage in ("decided", "failed"):
+        ongoing = None
+    if state.now_ns < state.halted_until_ns:
         return state
     idle = task.running is None and task.decision is None
-    if not idle:
-        if task.decision is None or task.running is None:
-            return state
+    if task.running is not None and task.decision is not None:
         cost_s, risen = risk_of_course(context, state.belief, task.decision)
-        if risen and cost_s > HALT_COST_S:
+        if risen and cost_s > HALT_COST_S:  # also during a search, which may take a second where CPU time is scarce
             return halted(context, state)
+        if ongoing is not None and not _is_followed(state, ongoing):
+            return state
         if not (risen or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
             return shortened(context, state)
+    elif not idle or ongoing is not None:
+        return state
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
@@ -88,12 +91,10 @@ def _with_deliberation(context: Context, state: State) -> State:
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 
-def _is_followed(state: State, deliberation: Deliberation | None) -> bool:
+def _is_followed(state: State, deliberation: Deliberation) -> bool:
     """Whether the running action follows a decision of this deliberation, which may still improve it."""
     task = state.task
-    if deliberation is None or task.running is None or task.decision is None:
-        return False
-    return task.decision.number == deliberation.number
+    return task.running is not None and task.decision is not None and task.decision.number == deliberation.number
 
 
 def _is_too_late(context: Context, state: State, deliberation: Deliberation) -> bool:

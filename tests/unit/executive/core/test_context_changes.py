@@ -16,7 +16,15 @@ from tailor.executive.interfaces.action_context import ActionContext, ContextCol
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.schemas import codec
-from tailor.schemas.messages import ActionFinished, ActionObjects, Contexts, Odometry, Subgoals, VelocityCommand
+from tailor.schemas.messages import (
+    ActionFinished,
+    ActionObjects,
+    Contexts,
+    Odometry,
+    RefinementReport,
+    Subgoals,
+    VelocityCommand,
+)
 from tests.support.toy_domain import SLIDE, LineBelief, LineDomain, LineModel, inputs, line_context
 
 MS = 1_000_000
@@ -98,8 +106,8 @@ class WaryLine(RetreatingLine):
     actions = {"slide": replace(SLIDE, context=replace(WALL, failure_cost_s=14.0), subgoal_action="slide")}
 
 
-def run(walls, domain=None, success=None):
-    """Outputs of one tick for each (number of walls, their place)."""
+def run(walls, domain=None, success=None, checks=2000):
+    """Outputs of one tick for each (number of walls, their place); `checks` are those of all ticks but the first."""
     models = Models({"slide/duration": LineModel()}, {"slide/clearance": success or BesideWall()})
     context = replace(line_context(Settings()), domain=domain or WalledLine(), models=models)
     state, x, ticks = initial_state(context), 0.0, []
@@ -107,7 +115,8 @@ def run(walls, domain=None, success=None):
         received = inputs(tick * 100 * MS, x, context.problem.goal_text if tick == 1 else "")
         odom = replace(received.samples[0].message, y=place, phi=float(count))
         samples = (replace(received.samples[0], message=odom), *received.samples[1:])
-        state, outputs = step(context, state, tick * 100 * MS, replace(received, samples=samples), CheckBudget(2000))
+        budget = CheckBudget(checks if tick > 1 else 15 * checks)
+        state, outputs = step(context, state, tick * 100 * MS, replace(received, samples=samples), budget)
         ticks.append((state.deliberations, [output.message for output in outputs]))
         x += 0.1 * state.command[0]
     return ticks
@@ -159,6 +168,16 @@ def test_robot_brakes_before_it_decides_anew_where_the_course_will_probably_fail
     braking = HALT_NS // (100 * MS)
     assert [commands[tick].v for tick in range(8, 8 + braking)] == [0.0] * braking
     assert [deliberations for deliberations, _ in ticks[6 : 7 + braking]] == [1] * braking + [2]
+
+
+def test_it_brakes_also_while_the_search_for_its_first_choice_goes_on():
+    ticks = run([(1, 40.0)] * 6 + [(2, 9.0)] * 12, checks=1)
+    commands = dict(published(ticks, VelocityCommand))
+    assert commands[7].v > 0
+    assert [message.finished for _, message in published(ticks, RefinementReport)[:5]] == [False] * 5
+    (at, ended), *_ = published(ticks, ActionFinished)
+    assert (at, ended.outcome, ended.reason) == (7, "aborted", "course at risk")
+    assert commands[8].v == 0
 
 
 def test_robot_drives_on_without_its_subgoal_once_the_object_is_gone():
