@@ -9,11 +9,11 @@ from tailor.executive import planning
 from tailor.executive.core.adoption import adopted
 from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened
 from tailor.executive.core.modes import Mode
+from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Deliberation
-from tailor.executive.deliberation.next_choice import NextChoice
-from tailor.executive.deliberation.plan_reuse import Preparation, reuse
+from tailor.executive.deliberation.plan_reuse import reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.domain_results import anchored
@@ -44,7 +44,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     state = _with_deliberation(context, state)
     deliberation = state.deliberation
     if deliberation is None:
-        return _with_rest_used(context, state, budget)
+        return with_budget_used(context, state, budget)
     if _is_too_late(context, state, deliberation):
         deliberation.settle()
     deliberation.advance(budget)
@@ -59,7 +59,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     if decision is not None:
         state = adopted(context, state, decision, deliberation.stage == "decided")
     if deliberation.stage == "decided":
-        state = _with_rest_used(context, _with_next_choice(context, state, deliberation), budget)
+        state = with_budget_used(context, with_next_choice(context, state, deliberation), budget)
         deliberation.certify(budget)  # what is left of the budget
     return state
 
@@ -128,51 +128,3 @@ def _with_failure(state: State, cause: Cause | None) -> State:
         return state
     task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
     return replace(state, task=task)
-
-
-def _with_next_choice(context: Context, state: State, deliberation: Deliberation) -> State:
-    """After a decision that took several ticks: the search for the choice after the running action.
-
-    Where one tick is enough, the next decision will not need it.
-    """
-    decision, known = state.task.decision, state.next_choice
-    if decision is None or state.task.running is None or deliberation.ticks == 1:
-        return state
-    if known is not None and known.decision is decision:
-        return state
-    return replace(state, next_choice=NextChoice(context, decision))
-
-
-def _with_rest_used(context: Context, state: State, budget: Budget) -> State:
-    """While an action runs and nothing is to be decided: prepare what follows it, then search a better plan."""
-    if state.task.running is None:
-        return state
-    preparation, coming = _preparation(context, state), state.next_choice
-    if preparation is not None:
-        state = replace(state, preparation=preparation)
-        if not preparation.advance_suffix(budget):
-            return state
-    if coming is not None and coming.decision is state.task.decision:
-        coming.advance(budget)
-    if preparation is not None:
-        preparation.advance(budget)
-    return state
-
-
-def _preparation(context: Context, state: State) -> Preparation | None:
-    """That of the plan after the running action, anew where observed facts have changed; None if it ends no step."""
-    task, running = state.task, state.task.running
-    if running is None or running.asserted or task.plan is None:
-        return None
-    action = task.plan.action_of(running.step)
-    if action is None:
-        return None
-    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
-    preparation = state.preparation
-    if preparation is None or not preparation.follows(task.plan, running.step, facts):
-        expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)
-        if preparation is None or not preparation.serves(task.plan, running.step, expected):
-            place = (task.plan, running.step, task.done)
-            preparation = Preparation(context, *place, expected, task.goal, state.ground)
-        preparation.note(facts)
-    return preparation
