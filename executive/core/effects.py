@@ -12,6 +12,8 @@ from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 
+MAX_SUBGOALS = 30  # reached in a row before one action: each may lead on around objects, but not for ever
+SUBGOAL = ""  # before a ground action in `Task.unconfirmed`: a subgoal of it was reached
 MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
 
 
@@ -30,9 +32,12 @@ def confirmed(context: Context, state: State, running: Running) -> State:
     The plan is then the same again: an action whose effects cannot be observed would be repeated for ever.
     """
     task = state.task
+    if running.asserted:
+        return _reached(state, running)
     action = planned_action(task.plan, running)
     if action is None:
         return state
+    task = replace(task, unconfirmed=tuple(each for each in task.unconfirmed if each != (SUBGOAL, *action)))
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     missing = missing_effects(context, facts, action)
     if not missing:
@@ -44,6 +49,21 @@ def confirmed(context: Context, state: State, running: Running) -> State:
         return state
     detail = f"{' '.join(action)}: done {count} times, and ({' '.join(min(missing))}) is not observed"
     return replace(state, fault=Cause(Reason.REPEATED_FAILURE, detail))
+
+
+def _reached(state: State, running: Running) -> State:
+    """Note an asserted subgoal that was reached; a fault if the action that it was asserted for never follows."""
+    task = state.task
+    action = task.plan.action_of(running.step) if task.plan is not None else None
+    if action is None:
+        return state
+    state = replace(state, task=replace(task, unconfirmed=(*task.unconfirmed, (SUBGOAL, *action))))
+    count = state.task.unconfirmed.count((SUBGOAL, *action))
+    if count < MAX_SUBGOALS:
+        return state
+    detail = f"{' '.join(action)}: {count} subgoals reached in a row, and it is still predicted to fail"
+    fault = Cause(Reason.REPEATED_FAILURE, detail)
+    return replace(state, fault=fault)
 
 
 def planned_action(plan: planning.Plan | None, running: Running) -> Fact | None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tailor.executive.core.action_cycle import MAX_FAILURES
-from tailor.executive.core.effects import MAX_UNCONFIRMED
+from tailor.executive.core.effects import MAX_SUBGOALS, MAX_UNCONFIRMED
 from tailor.executive.core.modes import Mode
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.models import Models
@@ -64,6 +64,9 @@ class Stuck(LineDomain):
                 if arguments[1] > belief.x > 0.0
                 else slide(state, now_ns, belief, arguments)
             ),
+            parameters=tuple(
+                dataclasses.replace(p, lower=-2.0, upper=2.0) if p.unit == "m" else p for p in SLIDE.parameters
+            ),
             success_model="slide/success",
             subgoal_action="slide",
         )
@@ -88,6 +91,29 @@ def test_a_failure_is_the_same_again_after_a_subgoal_that_was_asserted_before_th
     finished = messages(run, ActionFinished)
     assert [f.outcome for f in finished] == ["done", "failed", "done", "failed"]
     assert run[-1][0].cause == Cause(Reason.REPEATED_FAILURE, "slide: controller failed: stuck")
+
+
+class Deluded(LineDomain):
+    """Takes itself for behind home at once, where it never goes."""
+
+    actions = {
+        "slide": dataclasses.replace(
+            Stuck.actions["slide"], controller=lambda state, now_ns, belief, arguments: Control(state, (0.0,), "done")
+        )
+    }
+
+
+@pytest.mark.promise("P30")
+def test_subgoals_are_not_reached_for_ever_before_an_action_that_never_begins():
+    context = of(Deluded())
+    context = dataclasses.replace(context, models=Models(context.models.durations, {"slide/success": RunUp()}))
+    run = list(drive(context, goal="(visited a)", ticks=400, checks=600))
+    assert [f.outcome for f in messages(run, ActionFinished)] == ["done"] * MAX_SUBGOALS
+    assert run[-1][0].cause == Cause(
+        Reason.REPEATED_FAILURE,
+        f"slide home a: {MAX_SUBGOALS} subgoals reached in a row, and it is still predicted to fail",
+    )
+    assert run[-1][0].command == (0.0,)
 
 
 class Forgetful(LineDomain):
