@@ -110,7 +110,7 @@ def _misfit(reading: Reading) -> str:
     if reading.topic not in TOPICS:
         return f"a Reading of '{reading.topic}', expected the name of a topic"
     expected = TOPICS[reading.topic].type.__name__
-    return f"a Reading of {reading.topic} with {shown(reading.message)}, expected a {expected}"
+    return f"a Reading of {reading.topic} with {shown(reading.message)}, expected {expected}"
 
 
 def _in_order(events: Sequence[Event]) -> tuple[Event, ...]:

@@ -96,15 +96,19 @@ def instance(spec: DomainSpec, field: str) -> Any:
     """What an object that a spec names returns when it is called without arguments, e.g. the domain of "domain".
 
     Raises:
-      UsageError: As `part`; or the package's code raises an error.
+      UsageError: As `part`; or the package's code raises an error, or returns nothing.
     """
     make = part(spec, field)
+    where = f"domain {spec.name}: {field} = '{getattr(spec, field)}'"
     try:
-        return make()
+        made = make()
     except UsageError:
         raise
     except (Exception, SystemExit) as error:
-        raise UsageError(f"domain {spec.name}: {field} = '{getattr(spec, field)}': {raised_text(error)}") from error
+        raise UsageError(f"{where}: {raised_text(error)}") from error
+    if made is None:
+        raise UsageError(f"{where}: returned None, expected an object: a `return` is missing")
+    return made
 
 
 def file(spec: DomainSpec, field: str) -> Traversable:

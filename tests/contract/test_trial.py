@@ -36,7 +36,11 @@ MISTAKES = {
     "ValueError: XML parse error": ("scene.xml", "</mujoco>", ""),
     "body = 'cart.body:Body': invalid syntax (body.py, line ": ("body.py", "def _drive(self)", "def _drive(self"),
     "body = 'cart.body:Body': module 'cart.body' has no": ("body.py", "class Body:", "class Chassis:"),
-    "KeyError: 'odon' (topics.py, line ": ("body.py", 'Reading("odom"', 'Reading("odon"'),
+    "advance of the body of cart returned a Reading of 'odon', expected the name of a topic": (
+        "body.py",
+        'Reading("odom"',
+        'Reading("odon"',
+    ),
     "AttributeError: 'Sample' object has no attribute 'text' (belief.py, line ": (
         "belief.py",
         "= sample.message",

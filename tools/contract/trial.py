@@ -15,6 +15,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import part, spec_of
 from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.simnodes.body import Body
+from tailor.simnodes.world import World
 from tailor.tools.lockstep.action_run import new_body, run_action, sample_arguments
 from tailor.tools.lockstep.task_sampler import sampler_of
 
@@ -32,6 +33,7 @@ def try_actions(name: str, actions: Iterable[str]) -> None:
         part(spec, field)
     with blamed_on_package(spec, f"the package of {name} cannot gather"):
         body = new_body(domain)
+        World(body, {}, 0).advance(round(TRIAL_S * 1e9))  # which refuses what are no readings
         for action in actions:
             _try_action(body, domain, action)
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 from tailor.executive import domains
 from tailor.schemas import messages as m
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import part, spec_of
-from tailor.schemas.messages.scenes import Shape
+from tailor.schemas.messages.scenes import FrameTransform, Shape
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.packages.spec import DomainSpec
+from tailor.schemas.parsed_files import shown
 from tailor.schemas.topics import TOPICS
 from tailor.tools.scenes import planar_convention
 
@@ -43,7 +45,7 @@ class RobotScenes:
       seen_from: "above" or "behind", see SceneView.
       robot: Name of the robot; empty without a domain.
       has_odometry: Whether odometry is one of its sensors, so that "odom" stands between "map" and "base_link".
-      fault: What the package's `scene` raised last; it draws nothing then.
+      fault: What the package's `scene` raised last, or returned in place of a drawing; it draws nothing then.
     """
 
     def __init__(self, domain: str = "") -> None:
@@ -132,12 +134,30 @@ class RobotScenes:
         return scene if scene is not None and (scene.frames or scene.shapes) else None
 
     def _called(self, function: str, argument: Any) -> Any:
-        """What the package returns; None if it fails: no page or bus goes down with a drawing."""
+        """What the package returns; None if it fails, or is no drawing: no page or bus goes down with one."""
         try:
-            return getattr(self._view, function)(argument)
+            drawn = getattr(self._view, function)(argument)
         except Exception as error:
             self.fault = f"{function}: {type(error).__name__}: {error}"
             return None
+        expected = _expected_of(function, drawn)
+        if not expected:
+            return drawn
+        self.fault = f"{function} returned {shown(drawn)}, expected {expected} (schemas/packages/scene.py)"
+        return None
+
+
+def _expected_of(function: str, drawn: Any) -> str:
+    """What is expected in place of what a package's function returned; empty if that can be drawn."""
+    if function not in ("of_belief", "of_truth"):
+        kind: type = Shape if function == "of_object" else Pose3
+        return "" if drawn is None or isinstance(drawn, kind) else f"a {kind.__name__} or None"
+    if not isinstance(drawn, Scene):
+        return "a Scene"
+    parts = ((drawn.frames, FrameTransform), (drawn.shapes, Shape))
+    whole = all(isinstance(row, tuple | list) and all(isinstance(each, kind) for each in row) for row, kind in parts)
+    well = whole and isinstance(drawn.tracer, str) and isinstance(drawn.speed_mps, Real)
+    return "" if well else "a Scene of frames and shapes, with a tracer's name and a speed"
 
 
 def planar_pose(message: m.Message) -> Scene | None:

@@ -14,6 +14,7 @@ from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Contexts, RefinementReport, Subgoals
 from tailor.schemas.parsed_files import table_of
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
@@ -71,7 +72,8 @@ class Explainer:
             return None
         rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
         objects = self._objects
-        return explain(message, context.domain.actions, context.models, context.settings.refinement, rng, objects)
+        with blamed_on_run(context.domain.name):
+            return explain(message, context.domain.actions, context.models, context.settings.refinement, rng, objects)
 
     def best_cost(self, message: Subgoals) -> float:
         """Least objective that a long search finds for the same decision."""

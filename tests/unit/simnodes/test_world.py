@@ -87,8 +87,8 @@ def test_a_body_may_have_no_readings():
     ("topic", "message", "fault"),
     [
         ("odometer", Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0), "a Reading of 'odometer', expected the name of a topic"),
-        ("odom", 3.0, "a Reading of odom with 3.0, expected a Odometry"),
-        ("odom", PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0), r"a Reading of odom with PoseE.*, expected a Odometry"),
+        ("odom", 3.0, "a Reading of odom with 3.0, expected Odometry"),
+        ("odom", PoseEstimate(0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0), r"a Reading of odom with PoseE.*, expected Odometry"),
     ],
 )
 def test_a_reading_that_no_topic_has_is_refused(topic, message, fault):

@@ -19,6 +19,7 @@ from tailor.runtime.recordings.new_file import new_file
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
 from tailor.tools.recordings.recorded_source import source_entry
@@ -82,7 +83,9 @@ def _verify_each(runs: RecordedRuns, proofs: bool) -> tuple[list[Verdict], list[
 
 def _verified(runs: RecordedRuns, run: RecordedRun, proofs: bool) -> Verdict:
     """The verdict on the ticks before one that is missing, e.g. since an executive or the bus had stood still."""
-    return verify(runs, run, rebuild_context(run.provenance), proofs=proofs, partly=True)
+    context = rebuild_context(run.provenance)
+    with blamed_on_run(context.domain.name):
+        return verify(runs, run, context, proofs=proofs, partly=True)
 
 
 def _verify_and_write(path: Path, runs: RecordedRuns) -> Verdict:
@@ -93,7 +96,8 @@ def _verify_and_write(path: Path, runs: RecordedRuns) -> Verdict:
     with new_file(path):
         writer = RunWriter(path, context, {**run.provenance, **_made_here(context.domain.name)})
         try:
-            return verify(runs, run, context, writer)
+            with blamed_on_run(context.domain.name):
+                return verify(runs, run, context, writer)
         finally:
             writer.close()
 

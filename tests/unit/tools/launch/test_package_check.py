@@ -9,6 +9,7 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.interfaces.domain import Scenario
+from tailor.schemas import installed
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names, spec_of
 from tailor.schemas.messages import VelocityCommand
@@ -374,3 +375,10 @@ def test_code_that_raises_while_it_is_asked_is_named_in_one_line(method, monkeyp
     fault = r"^the package of soccer cannot be checked: KeyError: 'wheel' \(test_package_check.py, line \d+\)$"
     with pytest.raises(UsageError, match=fault):
         check_package("soccer")
+
+
+def test_a_package_that_makes_nothing_is_named(monkeypatch):
+    monkeypatch.setattr(installed, "part", lambda *_: lambda: None)
+    fault = r"^domain soccer: domain = '.*:make': returned None, expected an object: a `return` is missing$"
+    with pytest.raises(UsageError, match=fault):
+        domains.load("soccer")

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -179,6 +180,41 @@ def test_a_package_that_fails_to_draw_is_reported_and_stops_nothing(monkeypatch)
     feed = soccer_feed()
     assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}
     assert feed.fault == "of_belief: KeyError: 'wings'"
+
+
+DRAWN = Scene((frame("base_link", Pose3()),), (sphere("ball", 0.1),))
+WRONG_SCENES = {
+    "None, expected a Scene ": None,
+    "'x', expected a Scene ": "x",
+    "Scene(frames=(3,), shapes=(), ": replace(DRAWN, frames=(3,), shapes=()),
+    "Scene(frames=(), shapes=(None,), ": replace(DRAWN, frames=(), shapes=(None,)),
+    "Scene(frames=(), shapes=None, ": replace(DRAWN, frames=(), shapes=None),
+    "Scene(frames=(), shapes=(), tracer='base": replace(DRAWN, frames=(), shapes=(), speed_mps=None),
+}
+
+
+@pytest.mark.parametrize("fault", WRONG_SCENES)
+def test_what_cannot_be_drawn_is_reported_and_stops_nothing(monkeypatch, fault):
+    from tailor.robots import soccer_scene
+
+    monkeypatch.setattr(soccer_scene, "of_belief", lambda values: WRONG_SCENES[fault])
+    feed = soccer_feed()
+    assert {name for name, _ in published(feed, (0.1, "exec/status", status()))} == {"log"}
+    assert feed.fault.startswith(f"of_belief returned {fault}")
+    assert feed.fault.endswith("(schemas/packages/scene.py)")
+    monkeypatch.setattr(soccer_scene, "of_belief", lambda values: DRAWN)
+    assert "scene" in {name for name, _ in published(soccer_feed(), (0.1, "exec/status", status()))}
+
+
+def test_a_subgoals_place_that_is_none_is_reported(monkeypatch):
+    from tailor.robots import soccer_scene
+
+    monkeypatch.setattr(soccer_scene, "of_subgoal", lambda values: 3)
+    scenes = RobotScenes("soccer")
+    parameters = tuple(m.Parameter(name, 1, "pos1", "m", True, 0.0, 0.0, 0.0) for name in ("x", "xg"))
+    action = m.InstantiatedAction("goToPose", 1, False, 1.0, 0.0, (replace(parameters[0], label="pos0"), parameters[1]))
+    assert scenes.of_subgoals(m.Subgoals(0, 1, 1, (action,))) == ()
+    assert scenes.fault == "of_subgoal returned 3, expected a Pose3 or None (schemas/packages/scene.py)"
 
 
 def test_a_package_whose_scene_cannot_be_imported_is_drawn_by_convention(monkeypatch):
