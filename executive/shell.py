@@ -98,8 +98,8 @@ class Shell:
         """One tick. If it raises, the robot brakes at once; the guard latches its stop, as no command follows."""
         try:
             self._tick(period, goal, stopping)
-        except Exception:
-            with contextlib.suppress(Exception):  # code of the robot's package as well
+        except (Exception, SystemExit):
+            with contextlib.suppress(Exception, SystemExit):  # code of the robot's package as well
                 self._publish(at_once_at_rest(self._context, self._state, period.now_ns))
             raise
 

@@ -19,7 +19,7 @@ def blamed_on_package(spec: DomainSpec, what: str) -> Iterator[None]:
         yield
     except UsageError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if spec.package.startswith("tailor."):
             raise
         raise UsageError(f"{what}: {raised_text(error, spec)}") from error

@@ -26,7 +26,7 @@ def blamed_on_running_package(spec: DomainSpec) -> Iterator[None]:
         yield
     except UsageError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         folders = _folders(spec)
         passed = _entered(error.__traceback__, folders)
         if passed is None:

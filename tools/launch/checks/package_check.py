@@ -22,6 +22,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.launch.checks.call_check import faults_of_functions, faults_of_methods, faults_of_results
 from tailor.tools.launch.checks.driver_check import faults_of_table, mismatches_of
+from tailor.tools.launch.checks.field_check import faults_of_declared
 from tailor.tools.launch.checks.member_check import faults_of_members
 from tailor.tools.launch.checks.part_check import faults_of_parts
 from tailor.tools.launch.checks.scenario_check import faults_of_scenarios
@@ -46,7 +47,12 @@ def faults_of_package(spec: DomainSpec, domain: Domain) -> Iterator[str]:
     """All faults of a package, each with file and field."""
     yield from faults_of_parts(spec)
     where = spec.domain
-    for look in (faults_of_members, faults_of_methods, faults_of_results):  # each needs what the one before looks at
+    for look in (
+        faults_of_members,
+        faults_of_declared,
+        faults_of_methods,
+        faults_of_results,
+    ):  # each needs what the one before looks at
         if unlike := [f"{where}: {fault}" for fault in look(domain)]:
             yield from unlike
             return

@@ -67,6 +67,12 @@ def test_a_text_of_several_lines_stays_one_line(ours, capsys):
     assert "\x1b" not in capsys.readouterr().err
 
 
+def test_a_package_that_ends_the_process_is_named(ours, capsys):
+    spec, wheels = ours
+    with pytest.raises(UsageError, match=r"raised SystemExit: 3 \(in calls, "), blamed_on_running_package(spec):
+        wheels.calls(lambda: sys.exit(3))
+
+
 def test_errors_of_our_own_and_of_packages_that_ship_stay_as_they_are(ours, capsys):
     spec, wheels = ours
     with pytest.raises(KeyError), blamed_on_running_package(spec):

@@ -131,6 +131,21 @@ FAULTS = {
     "actions is [], expected Actions by name": lambda: soccer(actions=[]),
     "axes is None, expected a tuple of Axes": lambda: soccer(axes=None),
     "belief_names is (1, 2), expected a tuple of names": lambda: soccer(belief_names=(1, 2)),
+    "actions['goToPose']: parameters is None, expected a tuple of Parameters": lambda: changed(parameters=None),
+    "actions['goToPose']: parameters is (None,), expected a tuple of Parameters": lambda: changed(parameters=(None,)),
+    "actions['goToPose']: duration_model is None, expected text": lambda: changed(duration_model=None),
+    "actions['goToPose']: time_limit_factor is 'x', expected a number": lambda: changed(time_limit_factor="x"),
+    "actions['goToPose']: drives is 3, expected a tuple of text": lambda: changed(drives=3),
+    "actions['goToPose']: context is 3, expected an ActionContext": lambda: changed(context=3),
+    "actions['goToPose']: parameter 'x': argument is '0', expected a whole number": lambda: changed(
+        parameter={"argument": "0"}
+    ),
+    "actions['goToPose']: parameter 'x': tolerance is 'x', expected a number": lambda: changed(
+        parameter={"tolerance": "x"}
+    ),
+    "axis 'v': lower is None, expected a number": lambda: soccer(
+        axes=(dataclasses.replace(domains.load("soccer").axes[0], lower=None),)
+    ),
     "outlets is 3, expected a tuple of Outlets": lambda: with_members(outlets=3),
     "anchor takes (belief, scenario), expected (belief, scenario, remembered)": lambda: with_members(
         anchor=lambda belief, scenario: frozenset()
