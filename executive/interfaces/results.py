@@ -29,4 +29,4 @@ def is_row_of_numbers(value: Any) -> bool:
     """Whether a value is a tuple, a list or a one-dimensional array of real numbers."""
     if not isinstance(value, tuple | list) and getattr(value, "ndim", 0) != 1:
         return False
-    return all(isinstance(each, Real) for each in value)
+    return all(type(each) is float or isinstance(each, Real) for each in value)  # the first takes a tenth of the time
