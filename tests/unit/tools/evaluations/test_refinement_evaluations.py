@@ -145,6 +145,15 @@ def test_a_horizon_that_is_named_twice_is_run_once(tmp_path, monkeypatch, capsys
     assert seen == [[3, 2]]
 
 
+def test_the_largest_weight_of_energy_is_judged_wherever_it_is_named(monkeypatch, capsys, tmp_path):
+    def cost(_, weight, seed):
+        return energy.Cost(True, 10.0 + weight, (9.0 if weight == 1.0 else 8.0 - weight) + 0.1 * (seed % 7))
+
+    monkeypatch.setattr(energy, "cost_of", cost)
+    words = ["evaluate", "energy", "--episodes", "5", "--jobs", "1", "--store", str(tmp_path), "--weights", "0", "3"]
+    assert main([*words, "1"]) == main(words) == 0
+
+
 def test_other_models_or_settings_are_other_episodes(tmp_path):
     task, variant = Task("soccer", "approach-dribble"), Variant("h1")
     Journal(tmp_path, task, variant, ["a"]).note(DONE)
