@@ -41,7 +41,7 @@ def load_model(model: Path | str, zoo: Path | None = None) -> OnnxModel:
     if isinstance(model, str):
         check_place(card, model, path)
     session = _session(content, path)
-    check_identity(session.get_modelmeta().custom_metadata_map, session.get_inputs()[0].shape, card, path)
+    check_identity(_metadata(session, path), session.get_inputs()[0].shape, card, path)
     bounds = model_bounds(content, str(card["features"]), _number_of_features(card, path))
     loaded = _wrapped(session, card, path, bounds)
     _check_golden(loaded, card, path)
@@ -107,6 +107,14 @@ def _session(content: bytes, path: Path) -> Any:
         return open_session(content)
     except Exception as error:  # onnxruntime's exceptions have no common base
         raise UsageError(f"{path}: not a model that onnxruntime can run ({str(error).splitlines()[0]})") from None
+
+
+def _metadata(session: Any, path: Path) -> dict[str, str]:
+    try:
+        texts: dict[str, str] = session.get_modelmeta().custom_metadata_map
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: its metadata are no UTF-8, expected a model that Tailor made") from None
+    return texts
 
 
 def _number_of_features(card: Card, path: Path) -> int:
