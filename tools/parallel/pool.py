@@ -21,6 +21,7 @@ from typing import Any, Protocol
 
 from tailor.runtime.processes.parent_death_signal import PR_SET_PDEATHSIG
 from tailor.schemas.errors import UsageError
+from tailor.tools.parallel.quiet_shutdown import quieten_shutdown
 
 Part = Callable[..., Any]  # can be pickled
 Numbered = tuple[int, Any]  # index of a call, and its result
@@ -53,6 +54,7 @@ class Processes:
         from joblib import Parallel, delayed
 
         if jobs != 1:
+            quieten_shutdown()
             resource_tracker.ensure_running()  # starting it with the first worker, it would let interrupts through
         warnings.filterwarnings("ignore", ".*adjusting the input task")  # an interrupted command reports what it kept
         # in batches of one: a result that waits for others of its batch is lost with the process

@@ -59,6 +59,7 @@ class Context:
     """As much of an executive's context as an explanation needs."""
 
     class domain:  # noqa: N801
+        name = "synthetic"
         actions = LIBRARY
 
     class settings:  # noqa: N801

@@ -6,14 +6,17 @@ import contextlib
 import os
 import signal
 import subprocess
+import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from tailor.runtime.processes.child import tailor
 from tailor.tools.cli.termination import interrupted_by_sigterm
 from tailor.tools.parallel.pool import completed, in_order
+from tailor.tools.parallel.quiet_shutdown import quieten_shutdown
 from tests.support.bus_system import ROOT
 from tests.support.patience import PATIENCE_S
 
@@ -35,7 +38,7 @@ def workers_of(pid: int) -> list[int]:
 
 
 def interrupted() -> int:
-    os.kill(os.getpid(), signal.SIGTERM)
+    signal.raise_signal(signal.SIGTERM)  # in this thread, before the next line
     return 0
 
 
@@ -91,3 +94,28 @@ def test_no_worker_outlives_a_command_that_is_killed(tmp_path: Path) -> None:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(running.pid, signal.SIGKILL)
     assert running.returncode == -signal.SIGKILL
+
+
+@pytest.mark.parametrize(
+    ("error", "name", "killing", "printed"),
+    [
+        (KeyError(1), "ExecutorManagerThread", True, False),
+        (KeyError(1), "ExecutorManagerThread", False, True),
+        (ValueError(), "ExecutorManagerThread", True, True),
+        (KeyError(1), "another", True, True),
+    ],
+)
+def test_only_the_manager_of_workers_that_are_killed_says_nothing(monkeypatch, error, name, killing, printed) -> None:
+    seen: list[threading.ExceptHookArgs] = []
+    monkeypatch.setattr(threading, "excepthook", seen.append)
+    quieten_shutdown()
+    quieten_shutdown()  # as each use of the pool
+
+    def fail() -> None:
+        raise error
+
+    thread = threading.Thread(target=fail, name=name)
+    thread.executor_flags = SimpleNamespace(kill_workers=killing)  # type: ignore[attr-defined]
+    thread.start()
+    thread.join()
+    assert len(seen) == printed
