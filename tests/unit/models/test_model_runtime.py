@@ -104,6 +104,15 @@ def test_a_flipped_bit_is_refused(zoo: Path, seed: int) -> None:
         runtime.load_robot("agilo", zoo)
 
 
+def test_a_model_whose_metadata_are_no_text_is_refused(zoo: Path) -> None:
+    content = duration(zoo).read_bytes()
+    altered = content[::-1].replace(b"agilo"[::-1], b"agil\xff"[::-1], 1)[::-1]  # metadata are at the end
+    duration(zoo).write_bytes(altered)
+    changed_card(duration(zoo), sha256=sha256_of(altered))
+    with pytest.raises(UsageError, match="no UTF-8"):
+        runtime.load_model(duration(zoo))
+
+
 @pytest.mark.promise("P32")
 def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -> None:
     content = duration(zoo).read_bytes()[:-2000]
@@ -114,15 +123,6 @@ def test_a_truncated_file_is_refused_even_with_its_hash_in_the_card(zoo: Path) -
 
 
 @pytest.mark.promise("P32")
-def test_a_model_whose_metadata_are_no_text_is_refused(zoo: Path) -> None:
-    content = duration(zoo).read_bytes()
-    altered = content[::-1].replace(b"agilo"[::-1], b"agil\xff"[::-1], 1)[::-1]  # metadata are at the end
-    duration(zoo).write_bytes(altered)
-    changed_card(duration(zoo), sha256=sha256_of(altered))
-    with pytest.raises(UsageError, match="no UTF-8"):
-        runtime.load_model(duration(zoo))
-
-
 def test_a_model_of_another_robot_is_refused(zoo: Path) -> None:
     shutil.copytree(zoo / "agilo", zoo / "rover")
     with pytest.raises(UsageError, match=r"model of agilo/\w+/duration, expected rover/\w+/duration"):

@@ -43,11 +43,14 @@ def interrupted() -> int:
 
 
 def test_a_command_that_says_nothing_of_its_end_by_sigterm_ends_with_a_line(capsys) -> None:
-    before = signal.getsignal(signal.SIGTERM)
-    assert interrupted_by_sigterm(interrupted, "tailor evaluate") == 143
-    assert capsys.readouterr().err == "tailor evaluate: ended by SIGTERM\n"
-    assert interrupted_by_sigterm(lambda: 1, "tailor evaluate") == 1
-    assert signal.getsignal(signal.SIGTERM) == before
+    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)  # other tests of this process may have left a handler
+    try:
+        assert interrupted_by_sigterm(interrupted, "tailor evaluate") == 143
+        assert capsys.readouterr().err == "tailor evaluate: ended by SIGTERM\n"
+        assert interrupted_by_sigterm(lambda: 1, "tailor evaluate") == 1
+        assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def test_an_interrupt_is_for_the_process_that_waits() -> None:
