@@ -13,7 +13,6 @@ from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Fact
 
 MAX_SUBGOALS = 30  # reached in a row before one action: each may lead on around objects, but not for ever
-SUBGOAL = ""  # before a ground action in `Task.unconfirmed`: a subgoal of it was reached
 MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
 
 
@@ -37,7 +36,7 @@ def confirmed(context: Context, state: State, running: Running) -> State:
     action = planned_action(task.plan, running)
     if action is None:
         return state
-    task = replace(task, unconfirmed=tuple(each for each in task.unconfirmed if each != (SUBGOAL, *action)))
+    task = replace(task, approached=tuple(each for each in task.approached if each != action))
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     missing = missing_effects(context, facts, action)
     if not missing:
@@ -45,10 +44,8 @@ def confirmed(context: Context, state: State, running: Running) -> State:
         return replace(state, task=replace(task, unconfirmed=others))
     state = replace(state, task=replace(task, unconfirmed=(*task.unconfirmed, action)))
     count = state.task.unconfirmed.count(action)
-    if count < MAX_UNCONFIRMED:
-        return state
     detail = f"{' '.join(action)}: done {count} times, and ({' '.join(min(missing))}) is not observed"
-    return replace(state, fault=Cause(Reason.REPEATED_FAILURE, detail))
+    return state if count < MAX_UNCONFIRMED else _repeated(state, detail)
 
 
 def _reached(state: State, running: Running) -> State:
@@ -57,13 +54,14 @@ def _reached(state: State, running: Running) -> State:
     action = task.plan.action_of(running.step) if task.plan is not None else None
     if action is None:
         return state
-    state = replace(state, task=replace(task, unconfirmed=(*task.unconfirmed, (SUBGOAL, *action))))
-    count = state.task.unconfirmed.count((SUBGOAL, *action))
-    if count < MAX_SUBGOALS:
-        return state
+    state = replace(state, task=replace(task, approached=(*task.approached, action)))
+    count = state.task.approached.count(action)
     detail = f"{' '.join(action)}: {count} subgoals reached in a row, and it is still predicted to fail"
-    fault = Cause(Reason.REPEATED_FAILURE, detail)
-    return replace(state, fault=fault)
+    return state if count < MAX_SUBGOALS else _repeated(state, detail)
+
+
+def _repeated(state: State, detail: str) -> State:
+    return replace(state, fault=Cause(Reason.REPEATED_FAILURE, detail))
 
 
 def planned_action(plan: planning.Plan | None, running: Running) -> Fact | None:

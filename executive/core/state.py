@@ -66,8 +66,8 @@ class Task:
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
     failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since a step of the plan succeeded
-    unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them; and
-    # those before which a subgoal was reached, since each was done (see core/effects.py)
+    unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them
+    approached: tuple[Fact, ...] = ()  # ground actions whose asserted subgoals were reached, since each was done
     running: Running | None = None
     decision: Decision | None = None  # of the last deliberation
     external_failed: bool = False  # the external planner gets no more requests for this goal
