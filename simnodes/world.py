@@ -97,8 +97,8 @@ class World:
                 f"advance of the body of {self.body.robot} returned {shown(readings)}, expected {EXPECTED}"
             )
         for each in readings:
-            if each.topic not in TOPICS or not isinstance(each.message, TOPICS[each.topic].type):
-                raise UsageError(f"advance of the body of {self.body.robot} returned {_misfit(each)}")
+            if misfit := _misfit(each):
+                raise UsageError(f"advance of the body of {self.body.robot} returned {misfit}")
         return list(readings)
 
     def _due_ns(self, begun_ns: int) -> int:
@@ -106,11 +106,13 @@ class World:
 
 
 def _misfit(reading: Reading) -> str:
-    """Why nobody can publish a reading."""
+    """Why nobody can publish a reading; empty if it can be."""
     if reading.topic not in TOPICS:
         return f"a Reading of '{reading.topic}', expected the name of a topic"
-    expected = TOPICS[reading.topic].type.__name__
-    return f"a Reading of {reading.topic} with {shown(reading.message)}, expected {expected}"
+    expected = TOPICS[reading.topic].type
+    if isinstance(reading.message, expected):
+        return ""
+    return f"a Reading of {reading.topic} with {shown(reading.message)}, expected {expected.__name__}"
 
 
 def _in_order(events: Sequence[Event]) -> tuple[Event, ...]:
