@@ -12,10 +12,15 @@ import sys
 PR_SET_PDEATHSIG = 1  # <sys/prctl.h>; survives exec
 
 
+def request_at_parents_death(number: int) -> None:
+    """Have the kernel send this signal to this process when its parent dies."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
+
+
 def main() -> None:
     """Set the signal and exec; end silently if the parent has died meanwhile."""
     parent, number, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
+    request_at_parents_death(number)
     if os.getppid() == parent:
         os.execvp(program[0], program)
 

@@ -6,7 +6,6 @@ again if a worker is killed. Whoever iterates over the results writes them.
 
 from __future__ import annotations
 
-import ctypes
 import os
 import re
 import signal
@@ -19,7 +18,7 @@ from operator import itemgetter
 from traceback import extract_tb
 from typing import Any, Protocol
 
-from tailor.runtime.processes.parent_death_signal import PR_SET_PDEATHSIG
+from tailor.runtime.processes.parent_death_signal import request_at_parents_death
 from tailor.schemas.errors import UsageError
 from tailor.tools.parallel.quiet_shutdown import quieten_shutdown
 
@@ -134,7 +133,7 @@ def _end_with(waiting: int) -> None:
     Of a command that was killed, workers would stay for five minutes, with their memory and its standard output.
     """
     if os.getppid() == waiting:
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        request_at_parents_death(signal.SIGKILL)
 
 
 def _note_lines(error: Exception, lines: list[Any]) -> None:
