@@ -42,11 +42,11 @@ def three_places(settings=None):
     return context
 
 
-def drive(context, seen_from, ticks=120, budget=lambda: CheckBudget(500), goal=GOAL):
-    """Drives the point on the line; from tick `seen_from` on b has been visited by somebody else."""
+def drive(context, seen_from, ticks=120, budget=lambda: CheckBudget(500), goal=GOAL, shift=SEEN):
+    """Drives the point on the line; from tick `seen_from` on the places are shifted: by SEEN, somebody was at b."""
     state, x, ticks_run, published, states = initial_state(context), 0.0, [], [], []
     for n in range(1, ticks + 1):
-        samples = (odometry(n * TICK, x, n, SEEN if n >= seen_from else 0.0), driver(n * TICK))
+        samples = (odometry(n * TICK, x, n, shift if n >= seen_from else 0.0), driver(n * TICK))
         given, granted = Inputs(samples, goal if n == 1 else ""), budget()
         state, outputs = step(context, state, n * TICK, given, granted)
         x += 0.1 * state.command[0]

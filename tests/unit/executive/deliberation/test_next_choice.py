@@ -7,23 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tailor.executive.core.state import Inputs, initial_state, undecided
-from tailor.executive.core.step import step
+from tailor.executive.core.state import undecided
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.action import Parameter
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Interval
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tests.support.toy_domain import SLIDE, LineDomain, driver, line_context, odometry
+from tests.support.toy_domain import SLIDE, LineDomain, line_context
+from tests.unit.executive.deliberation.test_improvement import PROBLEM, TICK, drive
 
-TICK = 100_000_000
 PLACES = {"home": {"x": 0.0}, "a": {"x": 3.0}, "b": {"x": 6.0}, "c": {"x": 9.0}}
-PROBLEM = """
-(define (problem three-places) (:domain line) (:objects home a b c)
-  (:init (at home) (place a) (place b) (place c)) (:goal (and (visited a) (visited b) (visited c) (at c))))
-"""
-GOAL = "(and (visited a) (visited b) (visited c) (at c))"
 SLOW_MPS = 0.3  # an action that starts faster loses much time: alone, each action would end as fast as it can
 ONE, FEW, MANY = 1, 3, 500
 MOVED_M = 0.5  # more than the tolerance of a slide
@@ -57,13 +51,7 @@ def context():
 
 def driven(context, checks, ticks=120, moved_at=999):
     """The states of the drive, until the third action has begun; from tick `moved_at` on the places lie elsewhere."""
-    state, x, states = initial_state(context), 0.0, []
-    for n in range(1, ticks + 1):
-        shift = MOVED_M if n >= moved_at else 0.0
-        given = Inputs((odometry(n * TICK, x, n, shift), driver(n * TICK)), GOAL if n == 1 else "")
-        state, _ = step(context, state, n * TICK, given, CheckBudget(checks))
-        x += 0.1 * state.command[0]
-        states.append(state)
+    states, _, _ = drive(context, moved_at, ticks, lambda: CheckBudget(checks), shift=MOVED_M)
     return states
 
 
