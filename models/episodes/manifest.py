@@ -49,6 +49,7 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "episodes": (is_count, "a whole number"),
     "objects": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
     "scenarios": (_are_names, "a list of names"),
+    "horizon": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
     "situations": (is_count, "a whole number"),
     "candidates": (is_count, "a whole number"),
     "profile": (lambda value: isinstance(value, str), "text"),

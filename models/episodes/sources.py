@@ -14,7 +14,9 @@ Manifest = Mapping[str, Any]
 # and of choices by models what chose: `models_sha256`, and `runs_sha256` of the executive's source
 CHOSEN_BY = ("models_sha256", "runs_sha256")
 CANDIDATES = "candidates"  # number of tasks among which those of uncertain success were selected
-DRAW = ("source", "seed", "stream", "scenarios", "situations", CANDIDATES, "recordings", *CHOSEN_BY, "profile")
+DRAW = (
+    "source", "seed", "stream", "scenarios", "horizon", "situations", CANDIDATES, "recordings", *CHOSEN_BY, "profile",
+)  # fmt: skip
 SELECTED = ("situations", CANDIDATES)  # entries of a manifest whose episodes were selected among so many
 PROBE = 6  # first episodes of a data set that a card repeats, to be run again where the source has changed
 CALIBRATES = "calibrates"  # entry of a manifest: its episodes correct the intervals of the models that chose them

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least, processes
 from tailor.tools.parallel.cluster import configure_cluster
@@ -16,6 +17,7 @@ examples:
   tailor gather agilo goToPose --beside-object --episodes 3000 --seed 8 --out data/agilo-beside
   tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
+  tailor gather agilo --on-policy approach-dribble --horizon 1 --episodes 200 --out data/agilo-greedy
   tailor gather agilo --on-policy approach-dribble --episodes 300 --seed 9 --calibrates --out data/agilo-intervals
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo approachBall --uncertain --episodes 300 --out data/agilo-uncertain
@@ -25,6 +27,7 @@ examples:
 
 The episodes of each action are written to OUT/ACTION: Parquet parts, and manifest.json with their provenance. The same
 seed gives the same bits for any number of jobs, here and on a cluster."""
+HORIZON = RefinementSettings().horizon  # of the choices of --on-policy
 POOL = 4  # situations per episode of --active
 UNCERTAIN_POOL = 30  # tasks drawn per episode of --uncertain
 CHOOSING = "--on-policy, --active or --uncertain"
@@ -50,6 +53,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--pool",
         type=at_least(1, "--pool"),
         help=f"--active: situations per episode (default: {POOL}); --uncertain: tasks (default: {UNCERTAIN_POOL})",
+    )
+    parser.add_argument(
+        "--horizon",
+        type=at_least(1, "--horizon"),
+        help=f"--on-policy: actions that are optimised together (default: {HORIZON}; 1: greedy choices)",
     )
     parser.add_argument(
         "--calibrates",
@@ -104,6 +112,8 @@ def refuse_ignored(arguments: argparse.Namespace) -> None:
         raise UsageError("--pool counts the situations of --active and tasks of --uncertain, expected none without")
     if arguments.zoo and not (arguments.active or arguments.on_policy or arguments.uncertain):
         raise UsageError(f"--zoo names the models that choose, expected none without {CHOOSING}")
+    if arguments.horizon is not None and not arguments.on_policy:
+        raise UsageError("--horizon is for choices that are executed, expected none without --on-policy")
     if arguments.calibrates and not arguments.on_policy:
         raise UsageError("--calibrates is for choices of finished models, expected none without --on-policy")
     for name, default in SIMULATED.items() if arguments.recordings else ():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tailor.tools.learning.gather_options import POOL, UNCERTAIN_POOL
+from tailor.tools.learning.gather_options import HORIZON, POOL, UNCERTAIN_POOL
 
 MAX_SEED = 1_000_000_000  # a learner of several networks multiplies it, and scikit-learn takes 32 bits
 
@@ -19,12 +19,15 @@ class Round:
       scenarios: Scenarios that are run, or from which situations are drawn.
       episodes: Runs of each scenario; of an active round episodes of each action.
       pool: Of an active round: situations that are drawn for each episode.
+      horizon: Of an on-policy round: actions that are optimised together. With 1 choices are greedy: what refinement
+        is compared with, where it decides whether to leave it.
     """
 
     source: Literal["on-policy", "active"]
     scenarios: tuple[str, ...]
     episodes: int
     pool: int = POOL
+    horizon: int = HORIZON
 
     @property
     def situations(self) -> int:

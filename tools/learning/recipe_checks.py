@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tailor.executive import domains
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import random_episodes, run_data_sets
 from tailor.tools.learning.gathering.beside_objects import check_sampler
@@ -43,6 +44,8 @@ def check_recipe(robot: str, recipe: Recipe) -> None:
     for each in recipe.uncertain:
         check_candidates(each.pool, each.episodes)
         success_model(domain, each.action)  # raises UsageError if there is none
+    for each_round in recipe.rounds:
+        RefinementSettings(horizon=each_round.horizon)  # raises UsageError if it is too long
     for scenario in dict.fromkeys(name for _, each in recipe.chosen for name in each.scenarios):
         domains.load_scenario(domain, scenario, np.random.default_rng(0))  # raises UsageError if there is none
     needed = learned_beside(domain)

@@ -64,18 +64,22 @@ def _faults(recipe: Recipe) -> Iterator[str]:
 
 def _without_effect(table: dict[str, Any]) -> Iterator[str]:
     """Entries that nothing heeds; the recipe itself no longer distinguishes them from defaults."""
-    if any("pool" in each and each["source"] != "active" for each in table.get("rounds", ())):
+    rounds = table.get("rounds", ())
+    if any("pool" in each and each["source"] != "active" for each in rounds):
         yield "rounds.pool: only active rounds draw several situations for each episode"
+    if any("horizon" in each and each["source"] != "on-policy" for each in rounds):
+        yield "rounds.horizon: only on-policy rounds execute what is chosen with it"
 
 
 def _counts(recipe: Recipe) -> Iterator[tuple[str, int, int]]:
     """Key of each number in the file, its value, and the least legal one."""
     yield from (("episodes", recipe.episodes, 1), ("beside", recipe.beside, 0), ("objects", recipe.objects, 0))
     yield from (("random.episodes", each.episodes, 1) for each in recipe.random)
-    yield from ((f"{name}.episodes", chosen.episodes, 1) for name, chosen in recipe.chosen)
+    yield from ((f"{name}.episodes", drawn.episodes, 1) for name, drawn in recipe.chosen)
     for each in recipe.uncertain:
         yield from (("uncertain.episodes", each.episodes, 1), ("uncertain.pool", each.pool, 1))
-    yield from (("rounds.pool", each.pool, 1) for each in recipe.rounds)
+    for chosen in recipe.rounds:
+        yield from (("rounds.pool", chosen.pool, 1), ("rounds.horizon", chosen.horizon, 1))
 
 
 def _repeated(name: str, words: Sequence[str]) -> Iterator[str]:

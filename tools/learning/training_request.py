@@ -183,7 +183,8 @@ def _drawn(manifest: Mapping[str, Any]) -> str:
     if manifest.get("situations"):
         return f"--active {scenarios} --pool {_pool(manifest, 'situations')}"
     if scenarios:
-        return f"--on-policy {scenarios}" + (" --calibrates" if manifest.get("calibrates") else "")
+        horizon = f" --horizon {manifest['horizon']}" if manifest.get("horizon") else ""
+        return f"--on-policy {scenarios}{horizon}" + (" --calibrates" if manifest.get("calibrates") else "")
     action: str = manifest["action"]
     if manifest.get("objects"):
         return f"{action} --beside-objects {manifest['objects']}"

@@ -109,7 +109,8 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
 
         active = Active(domain, scenarios, arguments.episodes, arguments.pool or options.POOL, *where)
         return shown(run_active(active, arguments.jobs, arguments.resume), out, arguments.json)
-    policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where, arguments.calibrates)
+    options_of_runs = (arguments.calibrates, arguments.horizon or options.HORIZON)
+    policy = policy_runs.Policy(domain, scenarios, arguments.episodes, *where, *options_of_runs)
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
     steps = counted("runs", running, len(policy.jobs), policy_runs.finished_runs(policy))
     return shown(steps, out, arguments.json)

@@ -1,6 +1,7 @@
 """Gathers episodes from whole runs in lock-step with the current models (on-policy).
 
-Refinement prefers arguments where models err. On-policy episodes come from there.
+Refinement prefers arguments where models err. On-policy episodes come from there. It leaves the greedy choice where
+models predict that to be worse: with horizon 1 episodes come from what they have to judge besides.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Settings, make_context
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode
 from tailor.models.episodes.sources import CALIBRATES
 from tailor.simnodes.world import World
+from tailor.tools.learning.gather_options import HORIZON
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
 from tailor.tools.learning.gathering.run_data_sets import write
 from tailor.tools.learning.gathering.situations import situations
@@ -31,6 +34,7 @@ class Policy:
     """Scenarios to run with the current models, and the folder of their data sets, one per action.
 
     With `calibrates` no duration is learned from the episodes: they correct the intervals of these very models.
+    The horizon is the number of actions that are optimised together; with 1 all choices are greedy.
     """
 
     domain: str
@@ -41,20 +45,29 @@ class Policy:
     folder: Path
     profile: str = ""  # of the body; empty: the one that ships
     calibrates: bool = False
+    horizon: int = HORIZON
 
     @property
     def jobs(self) -> list[tuple[str, int]]:
         """Every run: scenario and a seed of its own, since scenarios of one seed share noise and the body's draws."""
         return situations(self.scenarios, FIRST_SEED, self.seed, self.runs * len(self.scenarios))
 
+    @property
+    def refinement(self) -> RefinementSettings:
+        """Settings of the runs. Raises UsageError if the horizon is too long."""
+        return replace(UNPROVEN, horizon=self.horizon)
+
 
 def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     """Check and prepare the folders, then run the missing runs in parallel; yields numbers of finished runs.
 
     Raises:
-      UsageError: The folder holds other episodes, or the same ones without `resume`; or models fail their checks.
+      UsageError: The folder holds other episodes, or the same ones without `resume`; models fail their checks; or the
+        horizon is too long.
     """
-    about = {"source": "lock-step, refined choices", "episodes": policy.runs}
+    kind = "refined" if policy.refinement.horizon > 1 else "greedy"
+    about: dict[str, object] = {"source": f"lock-step, {kind} choices", "episodes": policy.runs}
+    about |= {"horizon": policy.horizon} if policy.horizon != HORIZON else {}
     about |= {CALIBRATES: True} if policy.calibrates else {}
     prepare_chosen(policy, about, policy.jobs, resume)
     return _run_missing(policy, jobs)
@@ -97,7 +110,7 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
 
     domain = domains.load(policy.domain)
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
-    settings = Settings(seed=seed, refinement=UNPROVEN)
+    settings = Settings(seed=seed, refinement=policy.refinement)
     context = make_context(domain, drawn, cached_models(domain.robot, policy.zoo), settings, SENDER)
     world = World(body_of(policy.domain, policy.profile), start, seed)
     return EpisodeExtractor(domain).read(run_lockstep(context, world).messages)

@@ -49,7 +49,7 @@ def gather_round(making: Making, number: int, each: Round, zoo: Path) -> Iterato
         for step in run_active(active, making.jobs):
             yield Step(f"{title}: {step.title}", step.done, step.total)
         return
-    policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where)
+    policy = policy_runs.Policy(making.domain, each.scenarios, each.episodes, *where, horizon=each.horizon)
     yield from _run(policy, title, making.jobs)
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from tailor.models.cards.card import card_path, read_card
 from tailor.models.episodes.manifest import read_manifest
+from tailor.models.episodes.sources import source_of
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
@@ -78,6 +79,19 @@ def test_models_of_random_episodes_choose_those_of_uncertain_success(
         ("zoo-uncertain", True), ("zoo-0", False), ("zoo", False)
     ]  # fmt: skip
     assert Making("agilo", recipe, tmp_path, 1, "make").drawn[1:] == [each.folder.parent]
+
+
+def test_a_round_may_be_of_greedy_choices(tmp_path: Path, trained: list, monkeypatch) -> None:
+    horizons: list[int] = []
+    monkeypatch.setattr(policy_runs, "_run", lambda policy, *_: horizons.append(policy.refinement.horizon) or [])
+    greedy = replace(TINY.rounds[0], horizon=1)
+    list(make(Making("agilo", replace(TINY, rounds=(greedy, *TINY.rounds)), tmp_path, 1, "make")))
+    assert horizons == [1, 2]
+    manifests = [read_manifest(folder / "goToPose") for folder in trained[-1].data[1:3]]
+    assert [(each["source"], each.get("horizon")) for each in manifests] == [
+        ("lock-step, greedy choices", 1), ("lock-step, refined choices", None)
+    ]  # fmt: skip
+    assert [source_of(each, 0, "").get("horizon") for each in manifests] == [1, None]
 
 
 def test_finished_models_choose_what_corrects_their_intervals(tmp_path: Path, trained: list) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import beside_objects
-from tailor.tools.learning.recipe import Recipe
+from tailor.tools.learning.recipe import Recipe, Round
 from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.recipe_file import read_recipe
 from tailor.tools.main import main
@@ -40,6 +40,21 @@ def test_rounds_never_reach_the_seeds_of_the_next_one(tmp_path, source, most):
     path.write_text(ROUND.format(source, most + 1))
     with pytest.raises(UsageError, match=r"recipe.toml: rounds: 10000[24] situations .*expected at most 100000"):
         read_recipe(path)
+
+
+def test_a_horizon_is_for_on_policy_rounds_only(tmp_path):
+    path = tmp_path / "recipe.toml"
+    path.write_text(ROUND.format("on-policy", 1) + "\nhorizon = 1")
+    assert read_recipe(path).rounds[0].horizon == 1
+    for source, horizon, message in [
+        ("active", 1, r"rounds.horizon: only on-policy rounds execute"),
+        ("on-policy", 0, r"rounds.horizon is 0, expected at least 1"),
+    ]:
+        path.write_text(ROUND.format(source, 1) + f"\nhorizon = {horizon}")
+        with pytest.raises(UsageError, match=rf"recipe.toml: {message}"):
+            read_recipe(path)
+    with pytest.raises(UsageError, match=r"horizon is 51, expected at most 50"):
+        check_recipe("powercube", Recipe(9, rounds=(Round("on-policy", ("letter-I",), 1, horizon=51),)))
 
 
 def test_a_pool_is_for_active_rounds_only(tmp_path):

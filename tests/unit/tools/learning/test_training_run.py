@@ -113,6 +113,7 @@ def test_no_duration_is_learned_from_episodes_that_calibrate_and_cards_count_the
         ({"objects": 4}, "goToPose --beside-objects 4 --episodes 5 --seed 3"),
         ({"context": {"names": ["r"]}}, "goToPose --beside-object --episodes 5 --seed 3"),
         ({"scenarios": ["a", "b"], "on_policy": True}, "--on-policy a b --episodes 5 --seed 3"),
+        ({"scenarios": ["a"], "horizon": 1, "on_policy": True}, "--on-policy a --horizon 1 --episodes 5 --seed 3"),
         (
             {"scenarios": ["a"], "on_policy": True, "calibrates": True},
             "--on-policy a --calibrates --episodes 5 --seed 3",

@@ -203,6 +203,8 @@ def test_whole_runs_go_on_where_they_stopped_and_only_as_they_began(tmp_path: Pa
             "--pool counts the situations of --active and tasks of --uncertain, expected none without",
         ),
         (["agilo", "--pool", "2", "--on-policy", "approach"], "--pool counts the situations of --active"),
+        (["agilo", "--horizon", "1"], "--horizon is for choices that are executed, expected none without --on-policy"),
+        (["agilo", "--horizon", "51", "--on-policy", "approach"], "horizon is 51, expected at most 50"),
         (["agilo", "--calibrates", "--active", "approach"], "--calibrates is for choices of finished models, expected"),
         (
             ["agilo", "--zoo", "x"],
