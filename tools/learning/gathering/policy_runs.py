@@ -16,7 +16,6 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode
 from tailor.models.episodes.sources import CALIBRATES
 from tailor.simnodes.world import World
-from tailor.tools.learning.gather_options import HORIZON
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
 from tailor.tools.learning.gathering.run_data_sets import write
 from tailor.tools.learning.gathering.situations import situations
@@ -45,7 +44,7 @@ class Policy:
     folder: Path
     profile: str = ""  # of the body; empty: the one that ships
     calibrates: bool = False
-    horizon: int = HORIZON
+    horizon: int = UNPROVEN.horizon
 
     @property
     def jobs(self) -> list[tuple[str, int]]:
@@ -67,7 +66,7 @@ def run_policy(policy: Policy, jobs: int, resume: bool = True) -> Iterator[int]:
     """
     kind = "refined" if policy.refinement.horizon > 1 else "greedy"
     about: dict[str, object] = {"source": f"lock-step, {kind} choices", "episodes": policy.runs}
-    about |= {"horizon": policy.horizon} if policy.horizon != HORIZON else {}
+    about |= {"horizon": policy.horizon} if policy.horizon != UNPROVEN.horizon else {}
     about |= {CALIBRATES: True} if policy.calibrates else {}
     prepare_chosen(policy, about, policy.jobs, resume)
     return _run_missing(policy, jobs)
