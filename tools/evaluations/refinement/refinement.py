@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tailor.executive import domains
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import at_least, finite
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import MIN_UNITS
@@ -23,6 +24,7 @@ from tailor.tools.evaluations.tick_budget import budget_remark, configure_tick_b
 from tailor.tools.lockstep.bodies import body_of
 
 POINTS, ORACLE_RUNS = 18, 40
+RISK_COST_S = RefinementSettings().risk_cost_s
 REMARKS = (
     "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "
     "failures and contacts: share of all runs; arrival: mean error at the ends of the actions, by the ground truth",
@@ -75,6 +77,8 @@ def configure(
                         help=f"angles that the oracle tries (default {POINTS})")  # fmt: skip
     parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), metavar="N",
                         help=f"runs a start where choices are too many for all (default {ORACLE_RUNS})")  # fmt: skip
+    parser.add_argument("--risk-cost", type=finite("--risk-cost"), default=RISK_COST_S, metavar="S",
+                        help="price of a failure in the objective, seconds (default %(default)g)")  # fmt: skip
     configure_tick_budget(parser)
     configure_replicas(parser)
     configure_report(parser)
@@ -105,6 +109,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
             plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
     few = [] if all("ci95" in row for row in rows) else [FEW_REMARK]
     remarks = [*_paper(named, domain), *REMARKS, *few, *budget_remark(arguments.tick_ms)]
+    remarks += [f"price of a failure: {arguments.risk_cost:g} s"] if arguments.risk_cost != RISK_COST_S else []
     remarks += [ORACLE_REMARK] if arguments.oracle else []
     over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)

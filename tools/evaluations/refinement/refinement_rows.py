@@ -47,7 +47,7 @@ def rows_of(
 
 
 def _run(task: Task, seeds: Seeds, arguments: argparse.Namespace) -> Found:
-    base = RefinementSettings()
+    base = RefinementSettings(risk_cost_s=arguments.risk_cost)
     variants = [Variant(f"h{h}", replace(base, horizon=h)) for h in (GREEDY, *arguments.horizon)]
     return run_all(task, variants, seeds.starts(arguments.episodes), arguments.jobs, arguments.store, task.scenario)
 

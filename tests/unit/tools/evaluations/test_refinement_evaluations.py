@@ -145,6 +145,22 @@ def test_a_horizon_that_is_named_twice_is_run_once(tmp_path, monkeypatch, capsys
     assert seen == [[3, 2]]
 
 
+def test_the_price_of_a_failure_is_that_of_greedy_and_refined_runs(tmp_path, monkeypatch, capsys):
+    seen: list[Variant] = []
+
+    def run_all(task, variants, seeds, *_):
+        seen.extend(variants)
+        return {v.name: {seed: replace(DONE, seed=seed, variant=v.name) for seed in seeds} for v in variants}
+
+    monkeypatch.setattr(refinement_rows, "run_all", run_all)
+    words = ["evaluate", "refinement", "--domain", "arm", "--scenario", "letter-I", "--episodes", "3"]
+    main([*words, "--store", str(tmp_path), "--risk-cost", "20"])
+    assert [variant.refinement.risk_cost_s for variant in seen] == [20.0, 20.0]
+    assert "price of a failure: 20 s" in capsys.readouterr().out
+    assert main([*words, "--risk-cost=-1"]) == 2
+    assert "--risk-cost is '-1'" in capsys.readouterr().err
+
+
 def test_the_largest_weight_of_energy_is_judged_wherever_it_is_named(monkeypatch, capsys, tmp_path):
     def cost(_, weight, seed):
         return energy.Cost(True, 10.0 + weight, (9.0 if weight == 1.0 else 8.0 - weight) + 0.1 * (seed % 7))
@@ -362,7 +378,9 @@ def test_scenarios_have_starts_of_their_own(monkeypatch):
         return {variant.name: {seed: replace(DONE, seed=seed) for seed in seeds} for variant in variants}
 
     monkeypatch.setattr(refinement_rows, "run_all", run_all)
-    given = argparse.Namespace(profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0, tick_ms=0.0)
+    given = argparse.Namespace(
+        profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0, tick_ms=0.0, risk_cost=6.0
+    )
     rows, _ = refinement_rows.rows_of("arm", ["letter-A", "letter-B"], Seeds(100, {}), given)
     assert ran == {"letter-A": range(100, 104), "letter-B": range(104, 108)}
     assert [row["n"] for row in rows] == [4, 4, 8]
