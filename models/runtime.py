@@ -17,7 +17,7 @@ from tailor.models.cards.card import KINDS, SUCCESS_KINDS, UNITS, Card, card_pat
 from tailor.models.cards.checks import check_identity, check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.features.spaces import feature_spaces
-from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session
+from tailor.models.inference import OnnxDuration, OnnxModel, OnnxSuccess, open_session, run
 from tailor.schemas.errors import UsageError
 
 ZOO = Path(__file__).resolve().parent / "zoo"
@@ -143,6 +143,10 @@ def _check_golden(model: OnnxModel, card: Card, path: Path) -> None:
     """Compare predictions of the golden examples with the card; also warms up the session."""
     golden = card["golden"]
     arguments = np.array(golden["arguments"], np.float64)
+    for rows in (arguments, arguments[:1]):  # the executive predicts for one row, too
+        outputs = run(model.session, rows, len(card["outputs"]))
+        if isinstance(outputs, str):
+            raise UsageError(f"{path}: {outputs}")
     for name, values in zip(card["outputs"], _predictions(model, arguments), strict=True):
         expected = np.array(golden[name], np.float64)
         off = np.abs(values - expected)
