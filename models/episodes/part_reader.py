@@ -22,6 +22,7 @@ PER_EPISODE = {
     "success": ("is_boolean", "true or false"),
     "finished": ("is_boolean", "true or false"),
     "failure": ("is_string", "text"),
+    "tick": ("is_integer", "integers"),
     IN_CONTEXT: ("is_boolean", "true or false"),
 }
 OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
@@ -75,6 +76,18 @@ def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:
         if not pa.types.is_floating(table[WORK].type):
             raise UsageError(f"{path}: column {WORK} holds {table[WORK].type}, expected numbers")
         _check_size(table[WORK].to_numpy(), WORK, path)
+    _check_ticks(table["episode"].to_numpy(), table["tick"].to_numpy(), path)
+
+
+def _check_ticks(episodes: NDArray[np.integer], ticks: NDArray[np.integer], path: Path) -> None:
+    """Raise UsageError unless the ticks of each episode are 0, 1, 2 …: targets are computed from a row's place."""
+    rows = np.arange(len(ticks))
+    first = np.append(True, episodes[1:] != episodes[:-1])
+    expected = rows - np.maximum.accumulate(np.where(first, rows, 0))
+    wrong = np.flatnonzero(ticks != expected)
+    if len(wrong):
+        where = f"in row {wrong[0]}, of episode {episodes[wrong[0]]}"
+        raise UsageError(f"{path}: column tick holds {ticks[wrong[0]]} {where}, expected {expected[wrong[0]]}")
 
 
 def _check_size(values: NDArray[np.floating], name: str, path: Path) -> None:
