@@ -1,8 +1,11 @@
-"""Writes files of a data set whole or not at all, so that gathering can be interrupted at any time."""
+"""Writes files of a data set whole or not at all, by one process: gathering can be interrupted at any time."""
 
 from __future__ import annotations
 
+import fcntl
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.schemas.errors import UsageError
@@ -22,3 +25,36 @@ def write_whole(path: Path, content: bytes) -> None:
         if temporary.exists():
             temporary.unlink()
         raise UsageError(f"{path}: {error.strerror}, expected a file that can be written; finished ones stay") from None
+
+
+@contextmanager
+def only_writer(folder: Path) -> Iterator[None]:
+    """Hold a folder of data sets, made if there is none: nobody else gathers into it. A kill releases it.
+
+    Raises:
+      UsageError: Another process holds it.
+    """
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        opened = os.open(folder, os.O_RDONLY)
+    except OSError:  # which a write there reports
+        yield
+        return
+    try:
+        _lock(opened, folder)
+        yield
+    finally:
+        os.close(opened)
+        for each in made:  # as they were, where nothing was gathered
+            with suppress(OSError):
+                each.rmdir()
+
+
+def _lock(opened: int, folder: Path) -> None:
+    try:
+        fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise UsageError(f"{folder}: another process gathers into it, expected another folder, or its end") from None
+    except OSError:  # some network file systems lock no folders: they go without
+        return

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tailor.executive import domains
+from tailor.models.episodes.whole_files import only_writer
 from tailor.schemas.errors import UsageError
 from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.checks.package_check import check_package
@@ -35,7 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = arguments.on_policy or arguments.active or arguments.uncertain
     if arguments.on and arguments.zoo:
         arguments.zoo = str(Path(arguments.zoo).resolve())  # workers have another working directory
-    with working_on(arguments.on, Work((name,), arguments.zoo if chosen else None)), blamed_on_run(name, True):
+    work = Work((name,), arguments.zoo if chosen else None)
+    with working_on(arguments.on, work), blamed_on_run(name, True), only_writer(out):
         if arguments.uncertain:
             return _uncertain(arguments, name, out)
         if chosen or arguments.recordings:

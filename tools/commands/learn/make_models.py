@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from tailor.models.episodes.whole_files import only_writer
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.cli.number_checks import processes
@@ -71,7 +72,7 @@ def _making(robot: str, arguments: argparse.Namespace) -> Making:
 def _made(making: Making, zoo: Path, quiet: bool) -> dict[str, Any]:
     """Make and install the models of one robot; seconds of each step that was not done before."""
     seconds: dict[str, float] = {}
-    with blamed_on_run(spec_of_robot(making.robot).name, parts_alone=True):
+    with blamed_on_run(spec_of_robot(making.robot).name, parts_alone=True), only_writer(making.work / making.robot):
         show(_timed(make(making), seconds), quiet, {}, f"{making.robot}: ")
     install(making.zoo, zoo, making.robot)
     return {"zoo": str(zoo), "steps_s": {title: round(value, 1) for title, value in seconds.items()}}
