@@ -23,6 +23,7 @@ from tailor.executive.refinement.instantiation import Pattern
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.executive.refinement.objective.stage import Prediction
 from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.executive.refinement.solvers.solver import Solver
 
@@ -35,8 +36,8 @@ JOINT_CHECKS = 10  # batches for those of all actions together; with more no bet
 class PlanScore:
     """Predicted cost of one plan in seconds, roughly refined; resumable.
 
-    The objective's seconds (mean, k standard deviations, price of failures) are summed over all actions. Unlike in
-    refinement nothing is INVALID: subgoals that would be asserted are not known yet.
+    The objective's seconds (mean, k standard deviations, prices of failures and energy) are summed over all actions.
+    Unlike in refinement nothing is INVALID: subgoals that would be asserted are not known yet.
 
     Args:
       sequence: The plan's instantiation, without asserted subgoals.
@@ -69,9 +70,14 @@ class PlanScore:
         if not self._solver.finished:
             return None
         predictions = self._objective.predict(greedy if self._solver.best is None else self._solver.best)
-        k_std = self._settings.k_std
-        cost_s = float(sum(each.duration_s[0] + k_std * each.std_s[0] + each.failure_s[0] for each in predictions))
+        cost_s: float = sum(map(self._cost_s, predictions))
         return cost_s if math.isfinite(cost_s) else math.inf  # nan is less than nothing, and nothing less than it
+
+    def _cost_s(self, predicted: Prediction) -> float:
+        """Cost of one action, of which one choice was predicted; 0 J where energy has no weight."""
+        settings = self._settings
+        seconds = predicted.duration_s[0] + settings.k_std * predicted.std_s[0] + predicted.failure_s[0]
+        return float(seconds + settings.energy_weight * predicted.energy_j[0])
 
 
 class PlanChoice:

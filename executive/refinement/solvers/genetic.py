@@ -26,10 +26,13 @@ class GeneticAlgorithm(Solver):
       objective: Cost to minimise.
       rng: The only source of randomness.
       seeds: Initial candidates, shape (s, d).
+      generations_max: Maximum number of generations.
     """
 
-    def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array) -> None:
-        super().__init__(objective, rng, seeds, Limits(MAX_IDLE_GENERATIONS, MAX_GENERATIONS))
+    def __init__(
+        self, objective: Objective, rng: np.random.Generator, seeds: Array, generations_max: int = MAX_GENERATIONS
+    ) -> None:
+        super().__init__(objective, rng, seeds, Limits(MAX_IDLE_GENERATIONS, generations_max))
         self._size = CHROMOSOMES_PER_PARAMETER * objective.ranges.count
         self._population: Array | None = None
         self._costs = np.empty(0)

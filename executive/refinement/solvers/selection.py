@@ -10,7 +10,7 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.solvers.chain import ChainSolver
 from tailor.executive.refinement.solvers.chain_structure import Columns, blocks_of
 from tailor.executive.refinement.solvers.differential import DifferentialEvolution
-from tailor.executive.refinement.solvers.genetic import GeneticAlgorithm
+from tailor.executive.refinement.solvers.genetic import MAX_GENERATIONS, GeneticAlgorithm
 from tailor.executive.refinement.solvers.solver import Limits, Solver
 
 MIN_SUBGOALS = 3  # from here on, dynamic programming beats evolution for the same number of model inputs
@@ -38,7 +38,7 @@ def solver_for(
     if blocks is not None and (name == "chain" or not objective.ids):
         return ChainSolver(objective, rng, seeds, settings.batch, limits)
     if name == "genetic":
-        return GeneticAlgorithm(objective, rng, seeds)
+        return GeneticAlgorithm(objective, rng, seeds, min(settings.checks_max, MAX_GENERATIONS))
     return DifferentialEvolution(objective, rng, seeds, limits)
 
 

@@ -1,5 +1,7 @@
 """What a plan costs when plans are compared: nearly what it costs when it is executed, refined."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,8 +20,8 @@ MODELS = Models(
 SETTINGS = RefinementSettings(arrival_spread=(), horizon=2)
 
 
-def score(checks=1000):
-    running = PlanScore(approach_dribble(), MODELS, SETTINGS, np.random.default_rng(0))
+def score(checks=1000, models=MODELS, settings=SETTINGS):
+    running = PlanScore(approach_dribble(), models, settings, np.random.default_rng(0))
     while (cost_s := running.advance(CheckBudget(checks))) is None:
         pass
     return cost_s
@@ -36,3 +38,12 @@ def test_actions_that_depend_on_each_other_are_judged_together():
 
 def test_the_cost_is_the_same_however_the_work_is_divided():
     assert score() == score(checks=1)
+
+
+def test_energy_costs_its_weight():
+    """Each joule of an action that takes as many as seconds costs two seconds: three times its duration in all."""
+    energies = {"goToPose/energy": PoseDuration(0.2), "dribbleBall/energy": PoseDuration(2.0)}
+    models = Models(MODELS.durations | energies, MODELS.successes)
+    settings = RefinementSettings(arrival_spread=(), k_std=0.0, risk_cost_s=0.0)
+    seconds = score(models=models, settings=settings)
+    assert score(models=models, settings=replace(settings, energy_weight=2.0)) == pytest.approx(3 * seconds, rel=0.02)

@@ -185,3 +185,13 @@ def test_the_elite_are_the_best_valid_half_of_a_population_and_none_before_the_f
     search = DifferentialEvolution(never, np.random.default_rng(0), np.empty((0, 2)), Limits(2, 2))
     search.advance(CheckBudget(1))
     assert search.elite.shape == (0, 2)
+
+
+def test_every_solver_keeps_the_limit_of_checks():
+    """Subgoals are compared with few checks: a solver that took 500 for each would hold up the decision."""
+    for name in ("chain", "genetic", "differential"):
+        settings = RefinementSettings(solver=name, checks_max=7)
+        objective = SequenceObjective(approach_dribble().within(2), approach_dribble().variables, MODELS, settings)
+        search = solver_for(objective, settings, np.random.default_rng(0), np.empty((0, objective.ranges.count)))
+        search.advance(CheckBudget(100))
+        assert (search.finished, search.checks) == (True, 7), name
