@@ -29,6 +29,7 @@ PLACE = "pos2"  # where the ball is
 OTHER_NOISE = 500_000  # from one repeat to the next
 TASK = ("soccer", "approach-dribble")
 REMARKS = (
+    "angles: how many of the forced ones have a run that ended well; the last row is the mean over the starts",
     "angle: the robot's heading at the ball in the field's frame, the free angle of approach; its speed there is free "
     "too, and as refinement chose it",
     "regret: how much longer the simulated episode takes at the model's best angle than at the best angle of all "
@@ -109,7 +110,7 @@ def _row(sweep: Sweep) -> dict[str, Any]:
     model, simulated = sweep.model_best, sweep.simulated_best
     return {
         "start": str(sweep.seed),
-        "n": int(np.isfinite(sweep.simulated_s[2]).sum()),
+        "angles": int(np.isfinite(sweep.simulated_s[2]).sum()),
         "model_best_deg": math.degrees(sweep.angles[model]),
         "simulated_best_deg": math.degrees(sweep.angles[simulated]),
         "refined_deg": math.degrees(sweep.refined_rad),
@@ -128,9 +129,9 @@ def _row(sweep: Sweep) -> dict[str, Any]:
 
 
 def _mean(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """The mean over the starts; angles have none."""
-    kept = [key for key in rows[0] if not key.endswith("_deg") and key not in ("start", "n")]
-    return {"start": "mean", "n": len(rows)} | {key: float(np.nanmean([row[key] for row in rows])) for key in kept}
+    """The mean over the starts, whose number it names; directions have none."""
+    kept = [key for key in rows[0] if not key.endswith("_deg") and key != "start"]
+    return {"start": f"mean of {len(rows)}"} | {key: float(np.nanmean([row[key] for row in rows])) for key in kept}
 
 
 def _draw(task: Task, sweep: Sweep, path: Path) -> Path:

@@ -89,6 +89,18 @@ def test_a_figure_without_any_sweep_is_a_usage_error(monkeypatch):
         figure11.run(given)
 
 
+def test_the_last_row_of_figure_11_says_of_how_many_starts_it_is_the_mean():
+    foreseen = [(*FORESEEN[:2], ("dribbleBall", False, s)) for s in (4.0, 5.0, 6.0)]
+    runs = [[replace(DONE, duration_s=8.0 + k, predicted_actions=each)] for k, each in enumerate(foreseen)]
+    angles, failed = np.array([-1.0, 0.0, 1.0]), [replace(DONE, achieved=False)]
+    whole, part = (sweep_of(1, angles, 0.2, made, 0.0, 0.0) for made in (runs, [*runs[:2], failed]))
+    rows = [figure11._row(sweep) for sweep in (whole, part)]
+    assert [row["angles"] for row in rows] == [3, 2]
+    mean = figure11._mean(rows)
+    assert (mean["start"], mean["angles"]) == ("mean of 2", 2.5)
+    assert set(mean) <= set(rows[0]), "a column means the same in each row"
+
+
 def test_duration_between_two_angles_wraps_round_the_circle():
     angles = np.linspace(-math.pi, math.pi, 4, endpoint=False)
     runs = [[replace(DONE, duration_s=s, predicted_actions=FORESEEN)] for s in (8.0, 20.0, 20.0, 10.0)]
