@@ -35,9 +35,16 @@ class World:
       body: The simulated robot and its surroundings.
       events: Scheduled events in order of time.
       time_ns: World time since the last reset.
+
+    Raises:
+      UsageError: A value of the start or of an event has a name that the body does not.
     """
 
     def __init__(self, body: Body, start: Mapping[str, float], seed: int, events: Sequence[Event] = ()) -> None:
+        for what, values in (("start", start), *(("event", event.place) for event in events)):
+            if unknown := [name for name in values if name not in body.names]:
+                known = f"expected some of: {', '.join(body.names)}"
+                raise UsageError(f"{what} of {body.robot}: its body has no {', '.join(unknown)} ({known})")
         self.body = body
         self.time_ns = 0
         self._start, self._seed = dict(start), seed

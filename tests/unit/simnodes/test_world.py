@@ -68,6 +68,19 @@ def test_another_start_has_its_own_events_and_none_of_the_world():
 
 
 @pytest.mark.parametrize(
+    ("start", "events", "fault"),
+    [
+        ({"x": 1.0, "bal_x": 2.0}, (), "start of agilo: its body has no bal_x"),
+        ({}, (Event(0.0, {"x": 1.0}), Event(0.4, {"bal_x": 2.0, "q": 0.0})), "event of agilo: its body has no bal_x, q"),
+    ],
+)
+def test_a_value_that_the_body_does_not_name_is_refused(start, events, fault):
+    with pytest.raises(UsageError) as refused:
+        World(FakeBody(), start, 3, events)
+    assert str(refused.value) == f"{fault} (expected some of: {', '.join(FakeBody().names)})"
+
+
+@pytest.mark.parametrize(
     ("readings", "returned"), [(None, "None"), ("odom", "'odom'"), ([None], r"\[None\]"), ((3, 4), r"\(3, 4\)")]
 )
 def test_a_body_that_returns_no_readings_is_named(readings, returned):
