@@ -78,7 +78,12 @@ REASONS: dict[Reason, Row] = {
     Reason.CONTROLLER_FAILED: Row(ACTION, "failed: the controller has given up", "text of the controller"),
     Reason.COMMAND_INVALID: Row(ACTION, "failed: the command is not finite or has the wrong length", "the value"),
     Reason.ACTION_TIMEOUT: Row(ACTION, "failed: the action exceeded its time limit", "the limit"),
-    Reason.ROBOT_CARRIED: Row(ACTION, "failed: the robot was moved by others; it decides anew", ""),
+    Reason.ROBOT_CARRIED: Row(
+        ACTION,
+        "failed: poses are elsewhere than odometry leads: the robot was moved by others, or its wheels slip at an "
+        "obstacle; it decides anew",
+        "",
+    ),
     Reason.EFFECTS_HOLD: Row(ACTION, "done: its effects held before its controller ended", ""),
     Reason.SUPERSEDED: Row(ACTION, "aborted: a new decision begins with another action", ""),
     Reason.COURSE_AT_RISK: Row(

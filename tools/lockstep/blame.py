@@ -7,14 +7,17 @@ from contextlib import contextmanager
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
-from tailor.schemas.installed.package_errors import blamed_on_package
+from tailor.schemas.installed.package_errors import blamed_on_package, came_through
+from tailor.tools.cli.package_run import print_traceback
 
 
 @contextmanager
 def blamed_on_run(domain: str, parts_alone: bool = False) -> Iterator[None]:
     """Raise errors as a UsageError that names the package of `domain`, and its line if they came through it.
 
-    Those of robots that ship, and of domains that no package declares, stay as they are.
+    Those of robots that ship, and of domains that no package declares, stay as they are. The traceback of one that did
+    not come through the package's code is printed first: the package may have passed what we cannot use, or the fault
+    is ours.
 
     Args:
       domain: Its name; looked up only where something is raised.
@@ -31,5 +34,7 @@ def blamed_on_run(domain: str, parts_alone: bool = False) -> Iterator[None]:
             spec = spec_of(domain)
         except UsageError:
             raise error from None
+        if not spec.package.startswith("tailor.") and not came_through(error, spec):
+            print_traceback(error, error.__traceback__)
         with blamed_on_package(spec, f"the package of {domain} cannot be run"):
             raise

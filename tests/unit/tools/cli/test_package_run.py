@@ -10,6 +10,7 @@ from tailor.runtime.processes.child import tailor
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.tools.cli.package_run import blamed_on_running_package
+from tailor.tools.lockstep import blame
 from tailor.tools.new_robot.templates import write_robot
 from tests.support.bus_system import bus_system
 from tests.support.patience import PATIENCE_S
@@ -71,6 +72,28 @@ def test_a_package_that_ends_the_process_is_named(ours, capsys):
     spec, wheels = ours
     with pytest.raises(UsageError, match=r"raised SystemExit: 3 \(in calls, "), blamed_on_running_package(spec):
         wheels.calls(lambda: sys.exit(3))
+
+
+def test_in_lockstep_an_error_outside_of_the_package_keeps_its_traceback(ours, monkeypatch, capsys):
+    spec, wheels = ours
+    monkeypatch.setattr(blame, "spec_of", lambda _: spec)
+    with (
+        pytest.raises(
+            UsageError, match=r"^the package of haul cannot be run: KeyError: 'ours' \(test_package_run.py, "
+        ),
+        blame.blamed_on_run("haul"),
+    ):
+        raise KeyError("ours")
+    lines = capsys.readouterr().err.splitlines()
+    assert (lines[0], lines[-1]) == ("Traceback (most recent call last):", "KeyError: 'ours'")
+    with (
+        pytest.raises(
+            UsageError, match=r"^the package of haul cannot be run: JSONDecodeError: .* \(wheels.py, line 8\)"
+        ),
+        blame.blamed_on_run("haul"),
+    ):
+        wheels.breaks("{")
+    assert capsys.readouterr().err == "", "the package's own mistake is one line"
 
 
 def test_errors_of_our_own_and_of_packages_that_ship_stay_as_they_are(ours, capsys):
