@@ -9,6 +9,9 @@ from tailor.tools.lockstep.worlds import make_world
 from tailor.tools.main import main
 from tests.support.robots.known_robot import known_robot
 
+CLASS = "class Sampler(TaskSampler):"
+NO_SAMPLER = ("sampler.py", CLASS, f"Sampler = None\n\n\n{CLASS.replace('Sampler', 'Other', 1)}")
+
 MISTAKES = {
     "NameError: name 'X' is not defined (sampler.py, line ": ("sampler.py", "hypot(xg - x,", "hypot(xg - X,"),
     "KeyError: 'v' (sampler.py, line ": ("sampler.py", '("x", "y", "phi", "v")', '("x", "y", "phi", "w")'),
@@ -41,6 +44,17 @@ MISTAKES = {
         'Reading("odom"',
         'Reading("odon"',
     ),
+    "the package of cart does not hold together: cart.domain:make: update returned None, expected a belief": (
+        "domain.py",
+        "return filtering.update(belief, now_ns, samples)",
+        "filtering.update(belief, now_ns, samples)",
+    ),
+    "domain cart: sampler = 'cart.sampler:Sampler': makes a NoneType without sample, start, belief, arguments_now": (
+        "sampler.py",
+        CLASS,
+        f"def Sampler():\n    pass\n\n\n{CLASS.replace('Sampler', 'Other', 1)}",
+    ),
+    "domain cart: sampler = 'cart.sampler:Sampler': is None, expected a class of TaskSampler": NO_SAMPLER,
     "AttributeError: 'Sample' object has no attribute 'text' (belief.py, line ": (
         "belief.py",
         "= sample.message",
@@ -100,3 +114,12 @@ def test_a_package_whose_code_raises_is_refused_in_one_line(refusal, tmp_path, m
     assert refusal in error
     assert error.count("\n") == 1
     assert not (tmp_path / "data").exists()
+
+
+def test_a_sampler_that_is_none_is_named_by_evaluations_too(tmp_path, capsys):
+    with known_robot("cart", "wheeled", tmp_path) as folder:
+        change(folder / "cart", *NO_SAMPLER)
+        assert main(["evaluate", "models", "--domain", "cart"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("tailor evaluate: domain cart: sampler = 'cart.sampler:Sampler': is None, expected a class")
+    assert error.count("\n") == 1

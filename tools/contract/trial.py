@@ -17,6 +17,7 @@ from tailor.schemas.installed.package_errors import blamed_on_package
 from tailor.simnodes.body import Body
 from tailor.simnodes.world import World
 from tailor.tools.lockstep.action_run import new_body, run_action, sample_arguments
+from tailor.tools.lockstep.sampler_check import check_sampler
 from tailor.tools.lockstep.task_sampler import sampler_of
 
 TRIAL_S = 0.3  # of simulated time
@@ -29,8 +30,8 @@ def try_actions(name: str, actions: Iterable[str]) -> None:
       UsageError: A part cannot be imported, or code of the package raises; the message names its file and line.
     """
     spec, domain = spec_of(name), domains.load(name)
-    for field in ("sampler", "body"):
-        part(spec, field)
+    check_sampler(name)
+    part(spec, "body")
     with blamed_on_package(spec, f"the package of {name} cannot gather"):
         body = new_body(domain)
         World(body, {}, 0).advance(round(TRIAL_S * 1e9))  # which refuses what are no readings

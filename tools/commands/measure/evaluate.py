@@ -14,6 +14,7 @@ from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.lockstep.blame import blamed_on_run
+from tailor.tools.lockstep.sampler_check import check_sampler
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 
@@ -68,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
         check_writable("--report", folder / "index.html")  # not after hours
     for domain in {settings.domain for *_, settings in chosen if settings.domain}:
         check_package(domain)  # not in the midst of it, by a traceback
+        check_sampler(domain)
     with working_on(chosen[0][2].on if chosen else None, _work_of(chosen)):
         return _run_all(chosen, RESUME in flags, everything)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from tailor.executive.interfaces.action import Action, Controller, SubgoalRisk
 from tailor.executive.interfaces.domain import Domain
-from tailor.executive.interfaces.domain_results import first_belief, is_ready, kept_at, relocations, telemetry
+from tailor.executive.interfaces.domain_results import first_belief, is_ready, kept_at, relocations, telemetry, updated
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.package_errors import raised_text
 from tailor.schemas.parsed_files import shown
@@ -72,6 +72,7 @@ def faults_of_results(domain: Domain) -> Iterator[str]:
     """What the methods of a domain return for the first belief, in place of what is declared."""
     try:
         belief = first_belief(domain)
+        updated(domain, belief, 0, (), (0.0,) * len(domain.axes))
         for check in (is_ready, telemetry, relocations, kept_at):
             check(domain, belief)
     except UsageError as error:
