@@ -89,7 +89,10 @@ class PoseTracker:
         turn_rad = abs(math.remainder(odometry.phi - last[2], math.tau))
         passed_ns = odometry.stamp_ns - stamp_ns
         is_zero = max(abs(odometry.x), abs(odometry.y), abs(odometry.phi)) < ZERO
-        if is_zero and max(step_m, turn_rad) > AWAY and not 0 <= passed_ns <= ANEW_NS:
+        silent = not 0 <= passed_ns <= ANEW_NS
+        # without stamps no silence shows; only one that restarts is at zero to the last digit after such a step
+        restarted = not stamp_ns and not odometry.stamp_ns and not (odometry.x or odometry.y or odometry.phi)
+        if is_zero and max(step_m, turn_rad) > AWAY and (silent or restarted):
             return "began anew at zero"
         passed_s = 1e-9 * max(0, passed_ns)
         if step_m > JUMP_M + JUMP_MPS * passed_s:

@@ -71,7 +71,11 @@ def test_another_start_has_its_own_events_and_none_of_the_world():
     ("start", "events", "fault"),
     [
         ({"x": 1.0, "bal_x": 2.0}, (), "start of agilo: its body has no bal_x"),
-        ({}, (Event(0.0, {"x": 1.0}), Event(0.4, {"bal_x": 2.0, "q": 0.0})), "event of agilo: its body has no bal_x, q"),
+        (
+            {},
+            (Event(0.0, {"x": 1.0}), Event(0.4, {"bal_x": 2.0, "q": 0.0})),
+            "event of agilo: its body has no bal_x, q",
+        ),
     ],
 )
 def test_a_value_that_the_body_does_not_name_is_refused(start, events, fault):

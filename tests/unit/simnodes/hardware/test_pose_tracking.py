@@ -104,6 +104,23 @@ def test_odometry_that_goes_on_after_a_silence_or_passes_zero_is_carried_on():
     near(tracker.pose(), (1.0, 2.0, 0.0))
 
 
+@pytest.mark.parametrize(
+    ("pose", "again", "anew"),
+    [
+        ((0.4, 0.1, 0.2), (0.0, 0.0, 0.0), True),
+        ((0.0, 0.0, -0.3), (0.0, -0.0, 0.0), True),
+        ((0.4, 0.1, 0.2), (0.001, 0.0, 0.0), False),  # a robot that drives fast, perhaps
+        ((0.09, 0.0, 0.0), (0.0, 0.0, 0.0), False),
+    ],
+)
+def test_odometry_without_stamps_that_is_back_at_exactly_zero_makes_the_pose_unknown(pose, again, anew):
+    tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
+    for each in ((0.0, 0.0, 0.0), pose):
+        assert tracker.move(odometry(0.0, *each)) == ""
+    assert tracker.move(odometry(0.0, *again)) == ("began anew at zero" if anew else "")
+    assert (tracker.pose() is None) is anew
+
+
 def test_a_heading_that_jumps_makes_the_pose_unknown():
     tracker = PoseTracker((1.0, 2.0, 0.0), Drift())
     tracker.move(odometry(1.0, 0.0, 0.0, 3.1))
