@@ -10,6 +10,7 @@ import pytest
 
 from tailor.executive import domains
 from tailor.schemas.messages.kitchen import KitchenObject, KitchenTruth
+from tailor.simnodes.b21.body import B21Body
 from tailor.tools.evaluations import task_runs
 from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
@@ -61,7 +62,7 @@ def test_a_disturbed_scenario_is_evaluated_with_its_disturbance(monkeypatch) -> 
         return Run()
 
     monkeypatch.setattr(task_runs, "run_lockstep", run)
-    monkeypatch.setattr(task_runs, "body_of", lambda *_: MagicMock())
+    monkeypatch.setattr(task_runs, "body_of", lambda *_: MagicMock(names=B21Body.names))
     for scenario in ("one-cup", "moved-cup"):
         task_runs.run_task(Task("kitchen", scenario), Variant("h2"), 5)
     undisturbed, disturbed = worlds
