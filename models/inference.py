@@ -128,9 +128,13 @@ def run(session: Any, arguments: Array, count: int) -> list[Array] | str:
     except Exception as error:  # onnxruntime's exceptions have no common base
         return f"onnxruntime cannot run it ({str(error).partition(chr(10))[0]})"
     if len(outputs) != count or not all(_is_column(each, len(rows)) for each in outputs):
-        shapes = ", ".join(str(list(np.shape(each))) for each in outputs) or "none"
+        shapes = ", ".join(map(_shape, outputs)) or "none"
         return f"returns shapes {shapes} for {len(rows)} rows, expected {count} columns of numbers"
     return [each.astype(np.float64) for each in outputs]
+
+
+def _shape(values: Any) -> str:
+    return str(list(values.shape)) if isinstance(values, np.ndarray) else f"({type(values).__name__})"
 
 
 def _is_column(values: Any, rows: int) -> bool:

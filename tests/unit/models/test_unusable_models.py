@@ -38,7 +38,7 @@ UNUSABLE = [
     (single, "returns shapes [1], [1], [1] for 32 rows, expected 3 columns of numbers"),
     (lambda *_: [np.zeros((32, 1))] * 3, "returns shapes [32, 1], [32, 1], [32, 1] for 32 rows"),
     (lambda *_: [np.full(32, "x")] * 3, "returns shapes [32], [32], [32] for 32 rows, expected 3 columns of numbers"),
-    (lambda *_: [{"x": 1}] * 3, "returns shapes [], [], [] for 32 rows, expected 3 columns of numbers"),
+    (lambda *_: [[np.zeros(1), np.zeros(2)]] * 3, "returns shapes (list), (list), (list) for 32 rows, expected 3 col"),
 ]
 
 
