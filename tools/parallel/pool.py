@@ -56,6 +56,8 @@ class Processes:
             quieten_shutdown()
             resource_tracker.ensure_running()  # starting it with the first worker, it would let interrupts through
         warnings.filterwarnings("ignore", ".*adjusting the input task")  # an interrupted command reports what it kept
+        # loky replaces a worker that has waited for minutes, or has grown; one that was killed ends the command
+        warnings.filterwarnings("ignore", "A worker stopped while some jobs")
         # in batches of one: a result that waits for others of its batch is lost with the process
         parallel = Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)
         with _holding_interrupts():

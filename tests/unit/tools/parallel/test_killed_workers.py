@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import warnings
 from dataclasses import replace
 
 import pytest
@@ -63,3 +64,11 @@ def test_a_killed_worker_is_reported_in_one_line_and_the_next_work_has_workers()
         in_order(completed(killed, [(0,), (1,), (2,)], 2))
     assert "\n" not in str(raised.value)
     assert in_order(completed(killed, [(0,), (2,)], 2)) == [0, 2]
+
+
+def test_a_worker_that_was_replaced_is_no_news() -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        in_order(completed(lost, [(0,)], 1))
+        warnings.warn("A worker stopped while some jobs were given to the executor. This can be", stacklevel=1)
+    assert told == []
