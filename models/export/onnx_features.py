@@ -18,7 +18,8 @@ class Symbol:
     sink: Sink
     name: str
 
-    def _with(self, op: str, other: Symbol | float, swapped: bool = False) -> Symbol:
+    def pair(self, op: str, other: Symbol | float, swapped: bool = False) -> Symbol:
+        """A node of this symbol and another operand."""
         name = other.name if isinstance(other, Symbol) else self.sink.constant(single(other))
         pair = (name, self.name) if swapped else (self.name, name)
         return Symbol(self.sink, self.sink.add(op, *pair))
@@ -27,22 +28,37 @@ class Symbol:
         return Symbol(self.sink, self.sink.add("Gather", self.name, self.sink.constant(np.array(rows)), axis=0))
 
     def __add__(self, other: Symbol | float) -> Symbol:
-        return self._with("Add", other)
+        return self.pair("Add", other)
+
+    def __radd__(self, other: float) -> Symbol:
+        return self.pair("Add", other, swapped=True)
 
     def __sub__(self, other: Symbol | float) -> Symbol:
-        return self._with("Sub", other)
+        return self.pair("Sub", other)
 
     def __rsub__(self, other: float) -> Symbol:
-        return self._with("Sub", other, swapped=True)
+        return self.pair("Sub", other, swapped=True)
 
     def __mul__(self, other: Symbol | float) -> Symbol:
-        return self._with("Mul", other)
+        return self.pair("Mul", other)
+
+    def __rmul__(self, other: float) -> Symbol:
+        return self.pair("Mul", other, swapped=True)
+
+    def __truediv__(self, other: Symbol | float) -> Symbol:
+        return self.pair("Div", other)
 
     def __rtruediv__(self, other: float) -> Symbol:
-        return self._with("Div", other, swapped=True)
+        return self.pair("Div", other, swapped=True)
 
     def __lt__(self, other: Symbol | float) -> Symbol:
-        return self._with("Less", other)
+        return self.pair("Less", other)
+
+    def __gt__(self, other: Symbol | float) -> Symbol:
+        return self.pair("Greater", other)
+
+    def __neg__(self) -> Symbol:
+        return Symbol(self.sink, self.sink.add("Neg", self.name))
 
 
 class Tracing:
@@ -65,23 +81,24 @@ class Tracing:
         ends = (a.sink.constant(single(end)) for end in (low, high))
         return Symbol(a.sink, a.sink.add("Clip", a.name, *ends))
 
-    def lower(self, a: Symbol, b: Symbol) -> Symbol:
+    def lower(self, a: Symbol, b: Symbol | float) -> Symbol:
         """The lower element of each pair."""
-        return Symbol(a.sink, a.sink.add("Min", a.name, b.name))
+        return a.pair("Min", b)
 
-    def higher(self, a: Symbol, b: Symbol) -> Symbol:
+    def higher(self, a: Symbol, b: Symbol | float) -> Symbol:
         """The higher element of each pair."""
-        return Symbol(a.sink, a.sink.add("Max", a.name, b.name))
+        return a.pair("Max", b)
 
     def least(self, a: Symbol, groups: int, size: int) -> Symbol:
         """Least row of each group of `size` neighbours: from (groups · size, n) to (groups, n)."""
         grouped = a.sink.add("Reshape", a.name, a.sink.constant(np.array([groups, size, -1])))
         return Symbol(a.sink, a.sink.add("ReduceMin", grouped, a.sink.constant(np.array([1])), keepdims=0))
 
-    def where(self, condition: Symbol, a: Symbol | float, b: Symbol) -> Symbol:
+    def where(self, condition: Symbol, a: Symbol | float, b: Symbol | float) -> Symbol:
         """Elements of `a` where the condition holds, of `b` elsewhere."""
-        first = a.name if isinstance(a, Symbol) else b.sink.constant(single(a))
-        return Symbol(b.sink, b.sink.add("Where", condition.name, first, b.name))
+        sink = condition.sink
+        names = (each.name if isinstance(each, Symbol) else sink.constant(single(each)) for each in (a, b))
+        return Symbol(sink, sink.add("Where", condition.name, *names))
 
     def stack(self, *parts: Symbol) -> Symbol:
         """All rows of the parts, in order."""

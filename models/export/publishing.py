@@ -14,7 +14,6 @@ import onnx
 from numpy.typing import NDArray
 
 from tailor.models.cards.card import FORMAT, SUCCESS_KINDS, Card, identity
-from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.episodes.sources import CALIBRATES
@@ -147,11 +146,15 @@ def leaves(learner: Any) -> list[int]:
 
 
 def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequence[Any]]:
-    """Arguments spread over the episodes, the last at zero distance, and the learner's predictions."""
+    """Arguments spread over the episodes, and the learner's predictions.
+
+    The last ones are at zero distance: each `xg` is at its `x`, where the names tell that it is a goal.
+    """
     chosen = np.linspace(0, len(data.episodes) - 1, GOLDEN).astype(int)
     arguments = np.round(np.stack([data.episodes[k].arguments for k in chosen]), 6)
-    half = (arguments.shape[1] - len(data.manifest.get(CONTEXT, {}).get("names", ()))) // 2
-    arguments[-1, half : 2 * half] = arguments[-1, :half]
+    names = data.names
+    for start, goal in ((k, names.index(f"{name}g")) for k, name in enumerate(names) if f"{name}g" in names):
+        arguments[-1, goal] = arguments[-1, start]
     if about.kind not in SUCCESS_KINDS:
         arguments = _off_thresholds(arguments, learner, about.space)
     features = about.space(arguments)

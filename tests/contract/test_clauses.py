@@ -7,11 +7,13 @@ import shutil
 import types
 from itertools import chain
 
+import numpy as np
 import pytest
 
 from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.values import Interval
+from tailor.models.features.features import FeatureSpace, quantities
 from tailor.schemas.installed import models_folder
 from tailor.schemas.packages.scene import sphere
 from tailor.tools.contract.subject import Subject
@@ -126,6 +128,14 @@ def models_fit_the_actions(subject):
     folder = models_folder("cart") / "cart" / "drive"
     folder.mkdir(parents=True)
     (folder / "duration.card.json").write_text("{}")
+
+
+SPACES = (FeatureSpace("sine", quantities("a:m"), quantities("a:m"), lambda rows, ops: np.sin(rows)),)
+
+
+@breaks
+def features_can_be_exported(subject):
+    subject.spec = dataclasses.replace(subject.spec, features=f"{__name__}:SPACES")
 
 
 @breaks
@@ -270,6 +280,16 @@ def belief_is_drawn_where_the_truth_is(subject):
 @breaks
 def subgoals_have_places(subject):
     with_scene(subject, of_subgoal=lambda values: None)
+
+
+@pytest.mark.parametrize(
+    ("failing", "success_model", "kept"), [(1, "", False), (1, "drive/success", True), (2, "drive/success", False)]
+)
+def test_an_action_with_a_model_of_success_may_fail_in_some_runs(failing, success_model, kept, subject):
+    subject.runs, plain = 2, subject.run
+    with_action(subject, success_model=success_model)
+    subject.run = lambda case, seed: dataclasses.replace(plain(case, seed), done=seed >= failing)
+    assert (list(faults(CLAUSES["goals_are_reached"], subject, "drive")) == []) is kept
 
 
 def subgoal_faults(subject):

@@ -80,8 +80,13 @@ def commands_are_within_the_axes(subject: Subject, case: str) -> Iterator[str]:
 
 @clause("action", needs="body")
 def goals_are_reached(subject: Subject, case: str) -> Iterator[str]:
-    """The controller reports its goal reached, from random starts, within the time limit."""
-    for seed in range(subject.runs):
-        run = subject.run(case, seed)
-        if not run.done:
-            yield f"run {seed}: {run.failure} after {run.duration_s:.1f} s"
+    """The controller reports its goal reached, from random starts, within the time limit.
+
+    Of an action that names a model of success some runs may fail, not all.
+    """
+    runs = [subject.run(case, seed) for seed in range(subject.runs)]
+    missed = [
+        f"run {seed}: {run.failure} after {run.duration_s:.1f} s" for seed, run in enumerate(runs) if not run.done
+    ]
+    may_fail = bool(subject.domain.actions[case].success_model)  # learned from random runs of which some fail
+    yield from missed if len(missed) == len(runs) or not may_fail else ()

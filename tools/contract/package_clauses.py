@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.util import find_spec
 from typing import Any
 
 from tailor.executive.interfaces.outlet import outlets_of
@@ -109,3 +110,12 @@ def models_fit_the_actions(subject: Subject, case: str) -> Iterator[str]:
                 yield f"{action.name}: there is no model {model}"
             elif (takes := [each["name"] for each in found.card["arguments"]]) != names:
                 yield f"{model}: takes {' '.join(takes)}, expected {' '.join(names)} by the action {action.name}"
+
+
+@clause("package")
+def features_can_be_exported(subject: Subject, case: str) -> Iterator[str]:
+    """Each feature space of the package yields what it declares, and the same numbers as part of a model's graph."""
+    if subject.spec.features and find_spec("onnx"):  # without the extra `learn` nothing is exported
+        from tailor.models.export.space_check import faults_of_spaces
+
+        yield from faults_of_spaces(subject.spec)

@@ -49,11 +49,13 @@ def train_models(
       One row per model: robot, action, kind and test results.
 
     Raises:
-      UsageError: An unknown learner or feature space, missing or unsuitable data, or a zoo that cannot be written.
+      UsageError: An unknown learner or feature space, one of the robot's that cannot be exported, missing or
+        unsuitable data, or a zoo that cannot be written.
     """
     request, sets = checked(request), data_sets(request)
     for folder in itertools.chain(*sets.values()):
         check_owner(folder, request.robot)
+    _check_own_spaces(request.robot)
     (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
     rows: list[dict[str, Any]] = []
     for number, (action, folders) in enumerate(sets.items()):
@@ -82,6 +84,15 @@ def checked(request: TrainingRequest) -> TrainingRequest:
     )
 
 
+def _check_own_spaces(robot: str) -> None:
+    """Raise UsageError if a space of the robot's package cannot be exported: a whole training would end in that."""
+    from tailor.models.export.space_check import faults_of_spaces
+
+    spec = spec_of_robot(robot) if robot in robot_names() else None
+    if spec is not None and (faults := list(faults_of_spaces(spec))):
+        raise UsageError(f"domain {spec.name}: features = '{spec.features}': {'; '.join(faults)}")
+
+
 def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[dict[str, Any]]:
     """Train the models of one action; yields a row of test results per published model.
 
@@ -90,11 +101,15 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     """
     from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
+    from tailor.models.export.space_check import fault_in_data
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
     data = merge([without_context(each) for each in alone or sets])
     spaces = spaces_by_kind(request, data.names, folders[0])
+    for space in {space.name: space for space in spaces.values()}.values():
+        if fault := fault_in_data(space, data.episodes):
+            raise UsageError(f"{', '.join(map(str, folders))}: {fault}")
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
     own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tailor.executive.interfaces.action import Action
+from tailor.executive.interfaces.action import Action, unchanged
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
@@ -129,7 +129,11 @@ class EpisodeExtractor:
             if parameter.argument == 0:
                 believed = belief.get(other_names.get(parameter.name, parameter.name))
                 values[k] = values[k] if believed is None else believed  # a cup's spot is no state of the robot
-        arguments = run.action.arguments(values[None, :])[0]
+        if run.action.arguments is unchanged:
+            return values
+        arguments = run.action.arguments(values[None, :])[
+            0
+        ]  # mapped ones are those of the start, then those of the goal
         return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 
     def _observe(self, message: Message) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from tailor.executive import domains
+from tailor.executive.interfaces.action import Parameter as ActionParameter
 from tailor.models.episodes.episodes import UNOBSERVED
 from tailor.schemas.messages import (
     ActionFinished,
@@ -158,6 +159,18 @@ def test_the_work_of_the_drives_is_cut_with_the_episode_where_motion_is_told() -
     assert (np.diff(told.work_j[:-1]) > 0).all()
     [(_, untold)] = cut(subgoals("goToPose", {"xg": 2.0}), *drive("goToPose", 0, 5), finished("goToPose", 0, 0.5))
     assert untold.work_j is None
+
+
+def test_a_start_with_more_values_than_the_goal_is_believed_at_each_tick() -> None:
+    swirl, plain = ActionParameter("omega", 0, "omega", "rad/s", -2.0, 2.0), DOMAIN.actions["goToPose"]
+    turning = replace(DOMAIN, actions={"goToPose": replace(plain, parameters=(*plain.parameters, swirl))})
+    chosen = subgoals("goToPose", {"xg": 2.0}).actions[0]
+    chosen = replace(chosen, parameters=(*chosen.parameters, Parameter("omega", 8, "p", "rad/s", True, -2.0, 2.0, 0.0)))
+    turns = [replace(each, belief=(0.0, 0.0, 0.0, 0.0, 0.1 * k)) for k, each in enumerate(drive("goToPose", 0, 10))]
+    run = [Subgoals(0, 0, 2, (chosen,)), *turns, finished("goToPose", 0, 1.0)]
+    [(_, episode)] = EpisodeExtractor(turning).read(run)
+    assert np.allclose(episode.ticks[:, 8], 0.1 * np.arange(10))
+    assert np.allclose(episode.ticks[:, 4], 2.0)
 
 
 def test_a_reach_of_an_arm_keeps_the_spot_that_is_no_state_of_the_robot() -> None:

@@ -11,8 +11,10 @@ import pytest
 from tailor.models.cards.card import read_card
 from tailor.models.episodes.episodes import UNOBSERVED, DataSet, Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
+from tailor.models.features.features import FeatureSpace, quantities
 from tailor.models.training import success_training
 from tailor.schemas.errors import UsageError
+from tailor.schemas.packages.spec import DomainSpec
 from tailor.tools.learning import training_run
 from tailor.tools.learning.training_request import TrainingRequest, reproduction_command, spaces_by_kind
 from tailor.tools.learning.training_run import context_jobs, own_jobs, train_action, train_models
@@ -155,6 +157,31 @@ def test_data_of_something_else_is_refused_before_anything_is_written(tmp_path, 
     assert {path for path in set(tmp_path.rglob("*")) - before if path.name != "agilo"} <= {
         tmp_path / "zoo", tmp_path / "zoo/of", tmp_path / "zoo/of/mine"
     }  # fmt: skip
+
+
+NEGATIVE_ROOT = lambda rows, ops: ops.sqrt(-1.0 - rows[[0]] * rows[[0]])  # noqa: E731
+SPACES = (FeatureSpace("sine", quantities("x:m"), quantities("x:m"), lambda rows, ops: np.sin(rows)),)
+
+
+def test_a_space_that_cannot_be_exported_is_refused_before_training(tmp_path, monkeypatch):
+    written(tmp_path / "goToPose", 1)
+    mine = DomainSpec("soccer", "agilo", "m:f", features=f"{__name__}:SPACES")
+    monkeypatch.setattr(training_run, "spec_of_robot", lambda robot: mine)
+    monkeypatch.setattr(training_run, "train_action", lambda *_: pytest.fail("trained"))
+    with pytest.raises(UsageError, match=r"domain soccer: features = .*feature space 'sine' cannot be exported"):
+        train_models(TrainingRequest("agilo", tmp_path / "zoo", data=(tmp_path,), learner="linear"))
+
+
+def test_a_feature_that_is_not_finite_is_refused_before_training(tmp_path, monkeypatch):
+    written(tmp_path / "goToPose", 1)
+    root = FeatureSpace(
+        "root", quantities(" ".join(f"{name}:m" for name in NAMES[:8])), quantities("r:m"), NEGATIVE_ROOT
+    )
+    monkeypatch.setattr(training_run, "spaces_by_kind", lambda *_: {"duration": root})
+    with pytest.raises(
+        UsageError, match=r"goToPose: feature space 'root': r is nan in episode 0, expected a number; x = "
+    ):
+        train_models(TrainingRequest("agilo", tmp_path / "zoo", data=(tmp_path,), learner="linear"))
 
 
 def test_a_copy_beside_the_data_set_of_a_named_action_does_no_harm(tmp_path: Path) -> None:
