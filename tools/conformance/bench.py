@@ -13,7 +13,7 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import at_rest, messages_of
 from tailor.runtime.bus.attachment import Origin
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, Message
-from tailor.simnodes.driver_spec import DriverSpec
+from tailor.simnodes.driver_spec import DriverSpec, Limit
 
 PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors
@@ -150,7 +150,7 @@ class Bench:
         """Index and test speed of each axis that sensors show, without those that keep their set-points."""
         for index, (axis, limit) in enumerate(zip(self.domain.axes, self.spec.limits, strict=True)):
             if limit.kept is None and self.measured(axis.name) is not None:
-                yield index, self.fraction * min(abs(limit.lower), abs(limit.upper))
+                yield index, farther(limit) * self.fraction
 
     def tested_axes(self) -> list[tuple[int, float]]:
         """All of `tests`.
@@ -181,7 +181,7 @@ class Bench:
 
     def is_moving(self) -> bool:
         """Whether an axis moves at more than a third of its test speed."""
-        return any(abs(self.measured(self.domain.axes[i].name) or 0.0) > speed / 3 for i, speed in self.tests())
+        return any(abs(self.measured(self.domain.axes[i].name) or 0.0) > abs(speed) / 3 for i, speed in self.tests())
 
     def begin(self) -> None:
         """Bring the driver to rest, disarmed and with no e-stop latched.
@@ -228,6 +228,11 @@ class Bench:
         self._numbers[sender] += not behind
         known = sender if len(sender) == len(self.sender) else self.other
         return Origin(self._numbers[sender] - behind, round(self.link.now_s() * 1e9), known)
+
+
+def farther(limit: Limit) -> float:
+    """The limit of an axis in the direction in which it goes faster: a vehicle may hardly go back, or not at all."""
+    return limit.upper if limit.upper >= -limit.lower else limit.lower
 
 
 def speed_in(heard: Heard, axis: str) -> float | None:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from statistics import fmean, median
+from statistics import fmean, median, pstdev
 
-from tailor.tools.conformance.bench import Bench, NotPossible, speed_in
+from tailor.tools.conformance.bench import Bench, NotPossible, farther, speed_in
 
 STEP_S = 3.0  # longest step; a step ends as soon as the axis has settled, since an arm has no room to run
 WINDOW_S, SETTLED = 0.3, 0.03  # change of the mean speed from window to window, as a fraction of the step
@@ -19,6 +19,7 @@ SMOOTHED = 5  # samples
 DEAD_S, SLOPE, SPEED = 0.08, 0.3, 0.1  # differences that matter: seconds, and fractions
 RISE_S = 0.05  # of the whole rise: less is as good as at once; half of what is smoothed over, if that is longer
 LOW, HIGH = 0.25, 0.75  # of the step; between them a response is steepest, and noise matters least
+MAX_NOISE = LOW / 4  # of the step, after smoothing: else noise alone would cross LOW, and begin the response early
 MAX_GAP_S = 0.04  # beyond the usual time between two measurements: half of the dead time that matters
 TRIES = 5  # of a step with such a gap
 
@@ -57,9 +58,13 @@ def responses(bench: Bench, fraction: float) -> list[Response]:
     axes = bench.tested_axes()
     for index, _ in axes:
         axis, limit = bench.domain.axes[index], bench.spec.limits[index]
-        step = fraction * min(abs(limit.lower), abs(limit.upper))
+        step = fraction * farther(limit)
         command = [step if each == index else rest for each, rest in enumerate(bench.rest)]
-        response = _response(_whole_series(bench, command, index), step)
+        series = _whole_series(bench, command, index)
+        if (noise := _noise(series)) > MAX_NOISE * abs(step):
+            lost = f"a step of {step:.3g} {axis.unit} is lost in the noise of its measurements, {noise:.2g} {axis.unit}"
+            raise NotPossible(f"{axis.name}: {lost}; expected a higher --speed")
+        response = _response(series, step)
         if response is not None:
             found.append(Response(axis.name, axis.unit, step, *response))
     return found
@@ -98,11 +103,17 @@ def _series(bench: Bench, command: Sequence[float], index: int) -> list[tuple[fl
     while bench.link.now_s() - start_s < STEP_S:
         bench.drive(command, WINDOW_S)
         means.append(bench.measured(name, WINDOW_S) or 0.0)
-        if len(means) > 1 and means[-1] > step / 2 and abs(means[-1] - means[-2]) < SETTLED * step:
+        if len(means) > 1 and means[-1] / step > 0.5 and abs(means[-1] - means[-2]) < SETTLED * abs(step):
             break
     heard = [(each, v) for each in bench.log if each.at_s >= start_s and (v := speed_in(each, name)) is not None]
     ahead_s = min((each.at_s - each.stamp_s for each, _ in heard), default=0.0)
     return [(each.stamp_s + ahead_s - start_s, v) for each, v in heard]
+
+
+def _noise(series: Sequence[tuple[float, float]]) -> float:
+    """Standard deviation of the smoothed speeds once the axis has settled."""
+    settled = [v for t, v in series if t > series[-1][0] - 2 * WINDOW_S]
+    return pstdev(settled) / SMOOTHED**0.5 if settled else 0.0
 
 
 def differences(real: Sequence[Response], models: Sequence[Response]) -> Iterator[str]:

@@ -21,14 +21,13 @@ def moves_as_commanded(bench: Bench) -> Iterator[str]:
     bench.wait(SETTLE_S)
     axes = bench.tested_axes()
     bench.arm()
-    for index, speed in axes:
-        for sign in (1.0, -1.0):
-            name = bench.domain.axes[index].name
-            wanted = sign * speed
+    for index, _ in axes:
+        name, limit = bench.domain.axes[index].name, bench.spec.limits[index]
+        for wanted in (bench.fraction * end for end in (limit.upper, limit.lower) if end):
             since_s = bench.link.now_s()
             bench.drive([wanted if each == index else rest for each, rest in enumerate(bench.rest)], MOVE_S)
             found = bench.measured(name, 0.3) or 0.0
-            if abs(found - wanted) > WITHIN * speed:
+            if abs(found - wanted) > WITHIN * abs(wanted):
                 yield f"{name}: commanded {wanted:.3g}, measured {found:.3g}"
             yield from _displaced(bench, name, wanted, since_s)
             bench.drive(bench.rest, MOVE_S)

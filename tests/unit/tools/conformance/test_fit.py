@@ -1,12 +1,16 @@
 """The fit check sees every robot that moves otherwise than the models' robot, and no other."""
 
+from dataclasses import replace
+
 import pytest
 
 from tailor.executive import domains
 from tailor.schemas.messages import Odometry
 from tailor.simnodes.body import Reading
+from tailor.simnodes.driver_spec import Limit
 from tailor.simnodes.world import World
 from tailor.tools.conformance.bench import Bench, NotPossible
+from tailor.tools.conformance.clause import CLAUSES, judged
 from tailor.tools.conformance.fit import Response, differences, responses
 from tailor.tools.conformance.report import Report, advice, markdown
 from tailor.tools.conformance.simulated_link import SimulatedLink
@@ -81,6 +85,22 @@ def test_a_step_response_has_the_robots_figures():
     assert v.dead_s == pytest.approx(0.2, abs=0.04)
     assert v.slope == pytest.approx(0.5, rel=0.15)
     assert v.speed == pytest.approx(0.27, abs=0.01)
+
+
+def test_an_axis_that_hardly_goes_back_is_tested_forward():
+    for back in (-0.02, 0.0):
+        spec = replace(SPEC, limits=(Limit(back, 0.9), SPEC.limits[1]))
+        bench = Bench(SimulatedLink(World(Ramped(), {}, 0), spec), DOMAIN, spec, fraction=0.2)
+        assert responses(bench, 0.3)[0].commanded == pytest.approx(0.27)
+        assert not any(each.faults or each.skipped for each in judged(bench, [CLAUSES["moves_as_commanded"]]))
+
+
+def test_a_step_that_noise_hides_is_no_misfit_but_not_possible():
+    bench = Bench(SimulatedLink(World(Ramped(), {}, 0), SPEC), DOMAIN, SPEC, fraction=0.2)
+    with pytest.raises(
+        NotPossible, match=r"^v: a step of 0.036 m/s is lost in the noise .*; expected a higher --speed"
+    ):
+        responses(bench, 0.04)
 
 
 @pytest.mark.parametrize(("period_s", "found"), [(0.02, 1), (0.05, 0)])
