@@ -103,9 +103,9 @@ def search_text(decision: Decision, chosen_cost: float) -> str:
             f"searched by {report.solver}: {_counted(report.evaluations, 'evaluation')} in "
             f"{_counted(report.checks, 'check')}, {1000 * decision.deliberation_s:.0f} ms of deliberation in "
             f"{_counted(decision.ticks, 'tick')}, {state}; "
-            f"objective {report.greedy_s:.2f} s (greedy) to {report.best_s:.2f} s"
+            f"objective {_reported(report.greedy_s)} (greedy) to {_reported(report.best_s)}"
         )
-        if math.isfinite(chosen_cost) and chosen_cost - report.best_s >= SHOWN_S:
+        if report.best_s >= 0 and math.isfinite(chosen_cost) and chosen_cost - report.best_s >= SHOWN_S:
             parts[-1] += ", found after the action had begun and not adopted"
     if decision.finished is not None:
         end = decision.finished
@@ -122,6 +122,11 @@ def _compared(chosen: float, greedy: float) -> tuple[str, str, str]:
 
 def _seconds(value: float) -> str:
     return f"{value:.2f} s" if math.isfinite(value) else "INVALID"
+
+
+def _reported(cost: float) -> str:
+    """A cost from a message, in which a negative number is INVALID."""
+    return _seconds(cost if cost >= 0 else math.inf)
 
 
 def _counted(number: int, noun: str) -> str:

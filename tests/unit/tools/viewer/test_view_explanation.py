@@ -235,6 +235,17 @@ def test_a_better_choice_that_was_not_adopted_is_named(chosen_s, late) -> None:
     assert ("found after the action had begun and not adopted" in text) == late
 
 
+@pytest.mark.parametrize(
+    ("greedy", "best", "words"),
+    [(-1.0, 8.6, "objective INVALID (greedy) to 8.60 s"), (-1.0, -1.0, "objective INVALID (greedy) to INVALID")],
+)
+def test_an_invalid_objective_is_no_number_of_seconds(greedy, best, words):
+    """As a message has no infinity, it holds -1 s."""
+    report = RefinementReport(0, 9, 2, "DifferentialEvolution", True, 12096, 109, greedy, best)
+    text = search_text(Decision(8.9, Subgoals(0, 7, 2), report, 0.18, 3), 8.6)
+    assert text.endswith(words)
+
+
 def test_what_rounds_to_zero_has_no_sign():
     quantities = (Quantity("angle_to", "rad"), Quantity("v", "m/s"))
     text = features_text(Situation("goToPose", quantities, (-0.001, -0.001), (0.0, -0.5)))
