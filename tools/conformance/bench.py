@@ -193,6 +193,14 @@ class Bench:
             self.request(reset=True)
         self.request(arm=False)
         self.wait(SETTLE_S)
+        self.await_rest()
+
+    def await_rest(self) -> None:
+        """Listen until the robot has come to rest: some coast for seconds.
+
+        Raises:
+          NotPossible: It does not.
+        """
         until_s = self.link.now_s() + PATIENCE_S
         while self.is_moving():
             if self.link.now_s() > until_s:

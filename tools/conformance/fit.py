@@ -63,7 +63,7 @@ def responses(bench: Bench, fraction: float) -> list[Response]:
         series = _whole_series(bench, command, index)
         if (noise := _noise(series)) > MAX_NOISE * abs(step):
             lost = f"a step of {step:.3g} {axis.unit} is lost in the noise of its measurements, {noise:.2g} {axis.unit}"
-            raise NotPossible(f"{axis.name}: {lost}; expected a higher --speed")
+            raise NotPossible(f"{axis.name}: {lost}; expected a higher --speed, or --top-speed")
         response = _response(series, step)
         if response is not None:
             found.append(Response(axis.name, axis.unit, step, *response))

@@ -66,6 +66,7 @@ def stays_stopped(bench: Bench) -> Iterator[str]:
     bench.wait(bench.spec.timeout_ns * 1e-9 + SETTLE_S)
     if bench.state().mode == "armed":
         raise NotPossible("it does not stop without commands")
+    bench.await_rest()
     yield from _ignores(bench, command, "it was stopped")
 
 

@@ -95,10 +95,16 @@ def test_an_axis_that_hardly_goes_back_is_tested_forward():
         assert not any(each.faults or each.skipped for each in judged(bench, [CLAUSES["moves_as_commanded"]]))
 
 
+def test_a_robot_that_coasts_after_a_stop_takes_no_command():
+    bench = Bench(SimulatedLink(World(Ramped(slope=0.2), {}, 0), SPEC), DOMAIN, SPEC, fraction=0.2)
+    [verdict] = judged(bench, [CLAUSES["stays_stopped"]])
+    assert (verdict.faults, verdict.skipped) == ((), "")
+
+
 def test_a_step_that_noise_hides_is_no_misfit_but_not_possible():
     bench = Bench(SimulatedLink(World(Ramped(), {}, 0), SPEC), DOMAIN, SPEC, fraction=0.2)
     with pytest.raises(
-        NotPossible, match=r"^v: a step of 0.036 m/s is lost in the noise .*; expected a higher --speed"
+        NotPossible, match=r"^v: a step of 0.036 m/s is lost in the noise .*; expected a higher --speed, or --top-speed"
     ):
         responses(bench, 0.04)
 
