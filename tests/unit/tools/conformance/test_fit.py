@@ -10,10 +10,10 @@ from tailor.simnodes.body import Reading
 from tailor.simnodes.driver_spec import Limit
 from tailor.simnodes.world import World
 from tailor.tools.conformance.bench import Bench, NotPossible
-from tailor.tools.conformance.clause import CLAUSES, judged
 from tailor.tools.conformance.fit import Response, differences, responses
 from tailor.tools.conformance.report import Report, advice, markdown
 from tailor.tools.conformance.simulated_link import SimulatedLink
+from tailor.tools.conformance.suite import verdicts
 from tests.support.stand_ins.bad_drivers import SPEC
 from tests.support.stand_ins.body import FakeBody
 
@@ -92,12 +92,12 @@ def test_an_axis_that_hardly_goes_back_is_tested_forward():
         spec = replace(SPEC, limits=(Limit(back, 0.9), SPEC.limits[1]))
         bench = Bench(SimulatedLink(World(Ramped(), {}, 0), spec), DOMAIN, spec, fraction=0.2)
         assert responses(bench, 0.3)[0].commanded == pytest.approx(0.27)
-        assert not any(each.faults or each.skipped for each in judged(bench, [CLAUSES["moves_as_commanded"]]))
+        assert not any(each.faults or each.skipped for each in verdicts(bench, ["moves_as_commanded"]))
 
 
 def test_a_robot_that_coasts_after_a_stop_takes_no_command():
     bench = Bench(SimulatedLink(World(Ramped(slope=0.2), {}, 0), SPEC), DOMAIN, SPEC, fraction=0.2)
-    [verdict] = judged(bench, [CLAUSES["stays_stopped"]])
+    [verdict] = verdicts(bench, ["stays_stopped"])
     assert (verdict.faults, verdict.skipped) == ((), "")
 
 
