@@ -16,6 +16,7 @@ from tailor.tools.cli.number_checks import at_least, finite
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import MIN_UNITS
+from tailor.tools.evaluations.refinement.failed_runs import failure_remarks
 from tailor.tools.evaluations.refinement.paired_outcomes import is_better
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
@@ -93,7 +94,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     domain, scenarios = _scenarios(arguments, named)
     _refuse_ignored(arguments)
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
-    rows, plots = [], {}
+    rows, plots, failed = [], {}, []
     seeds = seeds_of(domain, arguments)
     for number, zoo in enumerate([arguments.zoo, *_other_models(domain, scenarios, arguments)]):
         settings = argparse.Namespace(**{**vars(arguments), "zoo": zoo, "oracle": 0 if number else arguments.oracle})
@@ -102,13 +103,14 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
         model = {"model": name, "first_seed": own.first} if arguments.models else {}
         made, pairs = rows_of(domain, scenarios, own, settings)
         rows += [{**model, **row} for row in made]
+        failed = failed or list(failure_remarks(pairs))
         if arguments.report is not None and not number:
             path = arguments.report / f"{named.name}.png"
             both = [pair for pair in pairs.values() if pair[0].achieved and pair[1].achieved]
             greedy_s, refined_s = ([pair[side].duration_s for pair in both] for side in (0, 1))
             plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
     few = [] if all("ci95" in row for row in rows) else [FEW_REMARK]
-    remarks = [*_paper(named, domain), *REMARKS, *few, *budget_remark(arguments.tick_ms)]
+    remarks = [*_paper(named, domain), *REMARKS, *few, *failed, *budget_remark(arguments.tick_ms)]
     remarks += [f"price of a failure: {arguments.risk_cost:g} s"] if arguments.risk_cost != RISK_COST_S else []
     remarks += [ORACLE_REMARK] if arguments.oracle else []
     over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
