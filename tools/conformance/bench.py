@@ -13,7 +13,8 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import at_rest, messages_of
 from tailor.runtime.bus.attachment import Origin
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, Message
-from tailor.simnodes.driver_spec import DriverSpec, Limit
+from tailor.simnodes.driver_spec import DriverSpec
+from tailor.simnodes.guard import Limit
 
 PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors

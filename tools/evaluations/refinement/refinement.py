@@ -94,7 +94,8 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     domain, scenarios = _scenarios(arguments, named)
     _refuse_ignored(arguments)
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
-    rows, plots, failed = [], {}, []
+    rows, plots = [], {}
+    failed: list[str] = []
     seeds = seeds_of(domain, arguments)
     for number, zoo in enumerate([arguments.zoo, *_other_models(domain, scenarios, arguments)]):
         settings = argparse.Namespace(**{**vars(arguments), "zoo": zoo, "oracle": 0 if number else arguments.oracle})

@@ -7,7 +7,7 @@ import pytest
 from tailor.executive import domains
 from tailor.schemas.messages import Odometry
 from tailor.simnodes.body import Reading
-from tailor.simnodes.driver_spec import Limit
+from tailor.simnodes.guard import Limit
 from tailor.simnodes.world import World
 from tailor.tools.conformance.bench import Bench, NotPossible
 from tailor.tools.conformance.fit import Response, differences, responses
