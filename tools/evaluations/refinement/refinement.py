@@ -10,9 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tailor.executive import domains
-from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least, finite
+from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import MIN_UNITS
@@ -20,12 +19,12 @@ from tailor.tools.evaluations.refinement.failed_runs import failure_remarks
 from tailor.tools.evaluations.refinement.paired_outcomes import is_better
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
+from tailor.tools.evaluations.refinement.settings_flag import configure_settings, settings_from, settings_remark
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.tick_budget import budget_remark, configure_tick_budget
 from tailor.tools.lockstep.bodies import body_of
 
 POINTS, ORACLE_RUNS = 18, 40
-RISK_COST_S = RefinementSettings().risk_cost_s
 REMARKS = (
     "pairs: greedy and refined from one start with the same noise; n: both achieved the goal; failed: pairs left out; "
     "failures and contacts: share of all runs; arrival: mean error at the ends of the actions, by the ground truth",
@@ -78,8 +77,7 @@ def configure(
                         help=f"angles that the oracle tries (default {POINTS})")  # fmt: skip
     parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), metavar="N",
                         help=f"runs a start where choices are too many for all (default {ORACLE_RUNS})")  # fmt: skip
-    parser.add_argument("--risk-cost", type=finite("--risk-cost"), default=RISK_COST_S, metavar="S",
-                        help="price of a failure in the objective, seconds (default %(default)g)")  # fmt: skip
+    configure_settings(parser)
     configure_tick_budget(parser)
     configure_replicas(parser)
     configure_report(parser)
@@ -93,6 +91,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     arguments = argparse.Namespace(**{**vars(arguments), **of_oracle, "horizon": horizons})
     domain, scenarios = _scenarios(arguments, named)
     _refuse_ignored(arguments)
+    settings_from(arguments.refinement)  # raises before anything runs
     body_of(domain, arguments.profile)  # raises on an unknown profile before anything runs
     rows, plots = [], {}
     failed: list[str] = []
@@ -112,7 +111,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
             plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
     few = [] if all("ci95" in row for row in rows) else [FEW_REMARK]
     remarks = [*_paper(named, domain), *REMARKS, *few, *failed, *budget_remark(arguments.tick_ms)]
-    remarks += [f"price of a failure: {arguments.risk_cost:g} s"] if arguments.risk_cost != RISK_COST_S else []
+    remarks += settings_remark(arguments.refinement)
     remarks += [ORACLE_REMARK] if arguments.oracle else []
     over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)

@@ -13,6 +13,7 @@ from tailor.tools.evaluations.oracles.search import search_choices
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import Pair, Start, columns
+from tailor.tools.evaluations.refinement.settings_flag import settings_from
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import run_all
 
@@ -47,7 +48,7 @@ def rows_of(
 
 
 def _run(task: Task, seeds: Seeds, arguments: argparse.Namespace) -> Found:
-    base = RefinementSettings(risk_cost_s=arguments.risk_cost)
+    base = settings_from(arguments.refinement)
     variants = [Variant(f"h{h}", replace(base, horizon=h)) for h in (GREEDY, *arguments.horizon)]
     return run_all(task, variants, seeds.starts(arguments.episodes), arguments.jobs, arguments.store, task.scenario)
 

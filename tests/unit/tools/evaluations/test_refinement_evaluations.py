@@ -145,7 +145,7 @@ def test_a_horizon_that_is_named_twice_is_run_once(tmp_path, monkeypatch, capsys
     assert seen == [[3, 2]]
 
 
-def test_the_price_of_a_failure_is_that_of_greedy_and_refined_runs(tmp_path, monkeypatch, capsys):
+def test_settings_are_those_of_greedy_and_refined_runs(tmp_path, monkeypatch, capsys):
     seen: list[Variant] = []
 
     def run_all(task, variants, seeds, *_):
@@ -154,11 +154,29 @@ def test_the_price_of_a_failure_is_that_of_greedy_and_refined_runs(tmp_path, mon
 
     monkeypatch.setattr(refinement_rows, "run_all", run_all)
     words = ["evaluate", "refinement", "--domain", "arm", "--scenario", "letter-I", "--episodes", "3"]
-    main([*words, "--store", str(tmp_path), "--risk-cost", "20"])
-    assert [variant.refinement.risk_cost_s for variant in seen] == [20.0, 20.0]
-    assert "price of a failure: 20 s" in capsys.readouterr().out
-    assert main([*words, "--risk-cost=-1"]) == 2
-    assert "--risk-cost is '-1'" in capsys.readouterr().err
+    main([*words, "--store", str(tmp_path), "--refinement", "risk_cost_s=20", "p_fail_max=0.15"])
+    assert [(v.refinement.horizon, v.refinement.risk_cost_s, v.refinement.p_fail_max) for v in seen] == [
+        (1, 20.0, 0.15), (2, 20.0, 0.15)
+    ]  # fmt: skip
+    assert "settings of refinement: risk_cost_s=20, p_fail_max=0.15" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("word", "message"),
+    [
+        ("risk_cost_s=-1", "risk_cost_s is -1"),
+        ("risk_cost_s=much", "--refinement 'risk_cost_s=much', expected KEY=VALUE"),
+        ("risk_cost_s", "--refinement 'risk_cost_s', expected KEY=VALUE"),
+        ("price=3", "price"),
+        ("patience=1.5", "patience"),
+        ("horizon=3", "of refined ones --horizon H"),
+    ],
+)
+def test_settings_that_there_are_not_are_refused_before_anything_runs(word, message, monkeypatch, capsys):
+    monkeypatch.setattr(refinement, "rows_of", lambda *_: pytest.fail("runs"))
+    assert main(["evaluate", "refinement", "--domain", "arm", "--refinement", word]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
 
 
 def test_the_largest_weight_of_energy_is_judged_wherever_it_is_named(monkeypatch, capsys, tmp_path):
@@ -379,7 +397,7 @@ def test_scenarios_have_starts_of_their_own(monkeypatch):
 
     monkeypatch.setattr(refinement_rows, "run_all", run_all)
     given = argparse.Namespace(
-        profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0, tick_ms=0.0, risk_cost=6.0
+        profile="", zoo="", episodes=4, horizon=[2], jobs=1, store=None, oracle=0, tick_ms=0.0, refinement=[]
     )
     rows, _ = refinement_rows.rows_of("arm", ["letter-A", "letter-B"], Seeds(100, {}), given)
     assert ran == {"letter-A": range(100, 104), "letter-B": range(104, 108)}
