@@ -1,5 +1,7 @@
 """Recipes that their robot cannot follow are refused before anything is gathered."""
 
+from pathlib import Path
+
 import pytest
 
 from tailor.schemas.errors import UsageError
@@ -55,6 +57,12 @@ def test_a_horizon_is_for_on_policy_rounds_only(tmp_path):
             read_recipe(path)
     with pytest.raises(UsageError, match=r"horizon is 51, expected at most 50"):
         check_recipe("powercube", Recipe(9, rounds=(Round("on-policy", ("letter-I",), 1, horizon=51),)))
+
+
+def test_the_recipe_of_the_degraded_robot_can_be_followed():
+    recipe = read_recipe(Path(__file__).parents[4] / "examples" / "degraded_recipe.toml")
+    check_recipe("agilo", recipe)
+    assert (recipe.profile, recipe.rounds[0].horizon) == ("degraded", 1)
 
 
 def test_a_pool_is_for_active_rounds_only(tmp_path):
