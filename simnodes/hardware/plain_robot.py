@@ -21,8 +21,10 @@ from tailor.schemas.ros2.plain import frame_in, twist_bytes
 from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.odometry_check import OdometryCheck
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
+from tailor.simnodes.hardware.pose_doubt import Doubt
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker
 
 WAIT_S, POLL_S = 0.05, 0.002
@@ -40,9 +42,12 @@ class PlainRobot(Hardware):
         self.write_hz = settings.rate_hz
         self._settings, self._endpoint = settings, settings.bus.connect or endpoint
         self._stack = ExitStack()
-        start, drift = settings.pose.start, Drift(settings.pose.drift_per_m, settings.pose.drift_per_rad)
+        pose = settings.pose
+        start, drift = pose.start, Drift(pose.drift_per_m, pose.drift_per_rad)
+        doubt = Doubt(pose.max_std_m, pose.max_std_rad) if settings.topics.pose else Doubt()
         # One for all openings: after a fault the robot stands where odometry has carried it, not at its start.
-        self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift)
+        self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift, doubt)
+        self._check = OdometryCheck()
         self._stamps: dict[str, int] = {}
         self._pose_due_ns = 0
 
@@ -54,7 +59,7 @@ class PlainRobot(Hardware):
         session = self._stack.enter_context(
             open_client(self._endpoint, role="driver", identity=identity_in(key) if key else None)
         )
-        self._stamps, self._pose_due_ns = {}, 0
+        self._stamps, self._pose_due_ns, self._check = {}, 0, OdometryCheck()
         command = named(names.cmd_vel, TYPES[settings.command])
         self._command = session.plain_publisher(*address(settings.bus, command))
         self._ends = [(Kind.PUBLISHER, command)]
@@ -119,8 +124,10 @@ class PlainRobot(Hardware):
             return False
         self._stamps[key] = stamp_ns
         if isinstance(message, Odometry):
-            if jump := self._tracker.move(message):
-                raise ValueError(f"{key}: {jump}; the pose is unknown until the localiser speaks")
+            if fault := self._tracker.move(message) or self._check.fault(message):
+                self._tracker.lose()
+                known_again = "the localiser speaks" if self._settings.topics.pose else "the driver is started again"
+                raise ValueError(f"{key}: {fault}; the pose is unknown until {known_again}")
         elif isinstance(message, PoseEstimate) and (fault := self._tracker.correct(message)):
             raise ValueError(f"{key}: {fault}")
         return True

@@ -13,6 +13,7 @@ from tailor.schemas.settings import from_table
 
 MIN_RATE_HZ, MAX_RATE_HZ = 0.1, 100.0  # the period of the least is a number; the driver's loop has the largest
 MAX_START = 1e6  # m or rad; every receiver refuses a pose far beyond
+MAX_STD = 1000.0  # m or rad
 TOPIC = re.compile(r"/?[\w-]+(/[\w-]+)*", re.ASCII)  # zenoh opens no other key, and some are patterns
 
 MAX_NAME = 247  # characters of a topic's name in ROS 2, of which no node could have a longer one
@@ -54,6 +55,8 @@ class PoseSettings:
     rate_hz: float = 12.5
     drift_per_m: float = 0.05
     drift_per_rad: float = 0.05
+    max_std_m: float = 1.0  # beyond, the pose is unknown; without a localiser there is no limit
+    max_std_rad: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,9 @@ def _faults(settings: PlainSettings) -> list[str]:
     for name, value in (("pose.drift_per_m", pose.drift_per_m), ("pose.drift_per_rad", pose.drift_per_rad)):
         if not 0.0 <= value <= 1.0:
             faults.append(f"{name} is {value:g}, expected 0 to 1")
+    for name, value in (("pose.max_std_m", pose.max_std_m), ("pose.max_std_rad", pose.max_std_rad)):
+        if not 0.0 < value <= MAX_STD:
+            faults.append(f"{name} is {value:g}, expected more than 0, up to {MAX_STD:g}")
     if pose.start and (len(pose.start) != 3 or not all(abs(value) <= MAX_START for value in pose.start)):
         faults.append(f"pose.start: expected x, y and phi, of at most {MAX_START:g}")
     if not topics.pose and not pose.start:

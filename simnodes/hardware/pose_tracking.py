@@ -11,6 +11,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.simnodes.hardware.pose_doubt import Doubt
 
 JUMP_M, JUMP_MPS = 0.5, 10.0  # a longer step of the odometry than both together is none that a robot has made
 JUMP_RAD, JUMP_RADPS = 0.5, 10.0  # nor is a larger turn
@@ -51,10 +52,16 @@ class PoseTracker:
       known: Whether there is a pose: a start was given, or the localiser has spoken.
     """
 
-    def __init__(self, start: Planar | None, drift: Drift) -> None:
-        """`start`: pose in the map when odometry begins, taken as exact; None: wait for the localiser."""
+    def __init__(self, start: Planar | None, drift: Drift, doubt: Doubt | None = None) -> None:
+        """Nothing was received yet.
+
+        Args:
+          start: Pose in the map when odometry begins, taken as exact; None: wait for the localiser.
+          drift: Errors of the odometry.
+          doubt: Limits of the standard deviations, beyond which the pose is unknown; None: there are none.
+        """
         self.known = False
-        self._start, self._drift = start, drift
+        self._start, self._drift, self._doubt = start, drift, doubt or Doubt()
         self._history: deque[tuple[int, Planar, float, float]] = deque(maxlen=HISTORY)
         self._distance_m, self._turned_rad = 0.0, 0.0
         self._to_map: Planar = (0.0, 0.0, 0.0)  # odometry's frame in the map
@@ -65,13 +72,14 @@ class PoseTracker:
         """Take odometry into account.
 
         Returns:
-          Text if it jumped, e.g. since the base has restarted: the pose is then unknown until the localiser speaks.
+          Text if it jumped, e.g. since the base has restarted, or if it has carried the pose too far: the pose is then
+          unknown until the localiser speaks.
         """
         pose = (odometry.x, odometry.y, odometry.phi)
         jump = self._jump(odometry)
         if jump:
             self._history.clear()
-            self._start, self.known = None, False
+            self.lose()
         elif self._history:
             last = self._history[-1][1]
             self._distance_m += math.dist(last[:2], pose[:2])
@@ -79,7 +87,19 @@ class PoseTracker:
         elif self._start is not None and not self.known:
             self._to_map, self.known = composed(self._start, inverse(pose)), True
         self._history.append((odometry.stamp_ns, pose, self._distance_m, self._turned_rad))
-        return jump
+        return jump or self._carried_too_far()
+
+    def lose(self) -> None:
+        """The pose is unknown from now on, until the localiser speaks."""
+        self._start, self.known = None, False
+
+    def _carried_too_far(self) -> str:
+        doubt = self._doubt.exceeded(*self._present_variances()) if self.known else ""
+        if not doubt:
+            return ""
+        self.lose()
+        way_m, turn_rad = self._distance_m - self._since[0], self._turned_rad - self._since[1]
+        return f"has carried the pose for {way_m:.1f} m and {turn_rad:.1f} rad: {doubt}"
 
     def _jump(self, odometry: Odometry) -> str:
         if not self._history:
@@ -103,10 +123,15 @@ class PoseTracker:
         """Take a pose of the localiser, valid at its stamp; without odometry it is ignored.
 
         Returns:
-          Text if no odometry is of its time and the robot has moved since: the pose is then ignored.
+          Text if no odometry is of its time and the robot has moved since: the pose is then ignored. Or text if the
+          localiser does not know where the robot is: then nobody does.
         """
         if not self._history:
             return ""
+        doubt = self._doubt.exceeded(seen.var_x, seen.var_y, seen.var_phi)
+        if doubt:
+            self.lose()
+            return f"the localiser is lost: {doubt}"
         near, apart_ns = self._history[-1], 0
         if seen.stamp_ns and near[0]:  # else a stamp is missing: the newest odometry
             near = min(self._history, key=lambda entry: abs(entry[0] - seen.stamp_ns))
@@ -128,9 +153,12 @@ class PoseTracker:
         """The pose at the newest odometry; None if it is not known."""
         if not self.known or not self._history:
             return None
-        stamp_ns, odometry, distance_m, turned_rad = self._history[-1]
-        x, y, phi = composed(self._to_map, odometry)
-        moved = ((distance_m - self._since[0]) * self._drift.per_m) ** 2
-        turned = ((turned_rad - self._since[1]) * self._drift.per_rad) ** 2
+        stamp_ns, odometry, *_ = self._history[-1]
+        return PoseEstimate(stamp_ns, *composed(self._to_map, odometry), *self._present_variances())
+
+    def _present_variances(self) -> Planar:
+        """Those of the localiser's newest pose, and of the way and turn since."""
+        moved = ((self._distance_m - self._since[0]) * self._drift.per_m) ** 2
+        turned = ((self._turned_rad - self._since[1]) * self._drift.per_rad) ** 2
         var_x, var_y, var_phi = self._variances
-        return PoseEstimate(stamp_ns, x, y, phi, var_x + moved, var_y + moved, var_phi + turned)
+        return var_x + moved, var_y + moved, var_phi + turned

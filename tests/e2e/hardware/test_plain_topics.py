@@ -10,7 +10,8 @@ import pytest
 from tailor.runtime.bus.opening import open_client, open_router
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import Odometry
+from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_robot import PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus
@@ -68,6 +69,38 @@ def test_a_robot_opened_again_is_where_odometry_has_carried_it():
         with pytest.raises(ValueError, match="odom: jumped by"):
             wait_until(robot.read)
         assert robot._tracker.pose() is None
+
+
+@pytest.mark.promise("P63")
+def test_two_publishers_of_odometry_are_a_fault_and_one_is_none_afterwards():
+    with opened("plain") as (odometry, robot):
+        codecs = [codec.encode(replace(ODOMETRY, stamp_ns=10**9 + n, y=2.0 + 0.3 * (n % 2))) for n in range(8)]
+        for data in codecs:
+            odometry.publish_encoded(data)
+        with pytest.raises(ValueError, match=r"odom: moves more than its own speeds say.* until the localiser speaks"):
+            wait_until(robot.read)
+        assert robot._tracker.pose() is None
+        robot.close()
+        robot.open()
+        later = replace(ODOMETRY, stamp_ns=4 * 10**9, x=1.3)
+        assert wait_until(lambda: odometry.publish_encoded(codec.encode(later)) and robot.read()) == {"odom": later}
+
+
+@pytest.mark.promise("P63")
+def test_a_localiser_that_is_lost_is_a_fault_and_gives_no_pose():
+    with opened("plain") as (odometry, robot):
+        odometry.publish_encoded(codec.encode(ODOMETRY))
+        assert "pose" in wait_until(robot.read)
+        lost = codec.encode(PoseEstimate(10**9, 5.0, 5.0, 0.0, 1e9, 1e9, 1e9))
+        with open_client(robot._endpoint) as base:
+            localiser = base.plain_publisher(*address(RobotBus(), named("amcl_pose", ros_type(PoseEstimate))))
+            wait_until(localiser.matched)
+            localiser.publish_encoded(lost)
+            with pytest.raises(ValueError, match="amcl_pose: the localiser is lost: standard deviation of 31622"):
+                wait_until(robot.read)
+        later = replace(ODOMETRY, stamp_ns=2 * 10**9)
+        odometry.publish_encoded(codec.encode(later))
+        assert wait_until(robot.read) == {"odom": later}
 
 
 def test_a_wrong_frame_is_a_fault():

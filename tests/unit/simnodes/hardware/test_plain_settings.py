@@ -22,6 +22,7 @@ WRONG = {
     'robot = "r"\n[pose]\nstart = [1e16, 0, 0]': "expected x, y and phi, of at most 1e+06",
     'robot = "r"\n[pose]\nstart = [nan, 0, 0]': "expected x, y and phi",
     'robot = "r"\n[pose]\ndrift_per_m = -1.0': "pose.drift_per_m is -1, expected 0 to 1",
+    'robot = "r"\n[pose]\nmax_std_m = 0.0': "pose.max_std_m is 0, expected more than 0, up to 1000",
     'robot = "r"\n[bus]\nprofile = "dds"': "expected one of: plain, rmw_zenoh",
     'robot = "r"\n[bus]\ndomain_id = 233': "bus.domain_id is 233, expected 0 to 232",
     'robot = "r"\n[topics]\ncmd_vel = "**"': "topics.cmd_vel is '**', expected a name of ROS 2 such as /base/cmd_vel",

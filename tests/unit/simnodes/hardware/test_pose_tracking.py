@@ -7,6 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tailor.schemas.messages import Odometry, PoseEstimate
+from tailor.simnodes.hardware.pose_doubt import Doubt
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker, composed, inverse
 
 POSES = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
@@ -157,3 +158,50 @@ def test_a_pose_from_before_all_odometry_holds_for_a_robot_that_has_stood_since(
     tracker = driven(mps=0.0)
     assert tracker.correct(seen(1.0, 5.0, 6.0, 1.0)) == ""
     near(tracker.pose(), (5.0, 6.0, 1.0))
+
+
+LIMITS = Doubt(max_std_m=1.0, max_std_rad=0.5)
+
+
+@pytest.mark.promise("P63")
+@pytest.mark.parametrize(
+    ("variances", "text"),
+    [
+        ((1e9, 0.01, 0.01), "the localiser is lost: standard deviation of 31622.78 m, beyond pose.max_std_m = 1"),
+        ((0.01, 4.0, 0.01), "the localiser is lost: standard deviation of 2.00 m, beyond pose.max_std_m = 1"),
+        ((0.01, 0.01, 3.29), "the localiser is lost: standard deviation of 1.81 rad, beyond pose.max_std_rad = 0.5"),
+    ],
+)
+@pytest.mark.parametrize("start", [None, (1.0, 2.0, 0.0)], ids=["without a pose before", "with one"])
+def test_a_localiser_that_is_lost_makes_the_pose_unknown_until_it_knows(start, variances, text):
+    tracker = PoseTracker(start, Drift(), LIMITS)
+    tracker.move(odometry(1, 0.0, 0.0, 0.0))
+    assert tracker.correct(PoseEstimate(10**9, 5.0, 5.0, 0.0, *variances)) == text
+    tracker.move(odometry(1.02, 0.0, 0.0, 0.0))
+    assert tracker.pose() is None
+    assert tracker.correct(PoseEstimate(10**9, 5.0, 5.0, 0.0, 0.25, 0.25, 0.0685)) == "", "AMCL's own first guess"
+    near(tracker.pose(), (5.0, 5.0, 0.0))
+
+
+@pytest.mark.promise("P63")
+@pytest.mark.parametrize(("metres", "radians"), [(0.05, 0.0), (0.0, 0.025)], ids=["driving", "turning"])
+def test_a_pose_that_odometry_alone_has_carried_too_far_is_unknown_until_the_localiser_speaks(metres, radians):
+    """A localiser that has died says nothing: the robot would be driven by odometry alone for ever."""
+    tracker, faults = PoseTracker(None, Drift(0.05, 0.05), LIMITS), {}
+    tracker.move(odometry(0.1, 0.0, 0.0, 0.0))
+    tracker.correct(seen(0.1, 0.0, 0.0, 0.0))
+    for k in range(1, 600):
+        if text := tracker.move(odometry(0.1 + 0.1 * k, metres * k, 0.0, math.remainder(radians * k, math.tau))):
+            faults[k] = text
+    (step,) = faults
+    assert (0.95 < 0.05 * metres * step <= 1.01) or (0.45 < 0.05 * radians * step <= 0.51)
+    assert "beyond pose.max_std_" in faults[step]
+    assert tracker.pose() is None
+    tracker.correct(seen(60.0, 3.0, 3.0, 1.0))
+    near(tracker.pose(), (3.0, 3.0, 1.0))
+
+
+def test_a_robot_without_a_localiser_is_carried_on_for_ever():
+    tracker = PoseTracker((0.0, 0.0, 0.0), Drift())
+    assert not any(tracker.move(odometry(0.1 + 0.1 * k, 0.05 * k, 0.0, 0.0)) for k in range(2000))
+    assert tracker.pose().x == pytest.approx(99.95)
