@@ -9,7 +9,6 @@ from pathlib import Path
 from tailor.executive.composition import ExecutiveConfig
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
-from tailor.schemas.installed import spec_of
 from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch.senders import Senders
 
@@ -92,5 +91,5 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
         tailor("executive", executive.domain, *flags),
         silence_ns=EXECUTIVE_SILENCE_NS,
         arguments=arguments,
-        restart_note=f", without a goal; next: tailor arm {spec_of(executive.domain).robot}, then tailor goal",
+        restart_note=", without a goal: arm the robot, then `tailor goal` sends one",
     )

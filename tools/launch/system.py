@@ -22,7 +22,7 @@ from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.live_status import Screen
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.launch.arming_advice import hardware_line
+from tailor.tools.launch.arming_advice import DriverLines
 from tailor.tools.launch.child_output import ChildOutput
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.once import OnceWatch
@@ -88,7 +88,8 @@ class _System:
         self._recording = RecordingWatch(config.require_recording, screen.report)
         self._folder = RunFolderWatch(config.bus.endpoint)
         self._once = OnceWatch(config, supervisor.starts)
-        self._result = self._reported = ""
+        self._driver = DriverLines(self._robot, bool(config.hardware), lambda line: screen.report(plain(line)))
+        self._result = ""
 
     def run(self) -> str:
         """Start process after process, each once the one before is ready; then supervise them."""
@@ -135,18 +136,11 @@ class _System:
             if isinstance(message, DriverState):
                 if self._senders.sent(sample, self._config.driver):
                     self._once.hear(message)
-                    self._report_hardware(message)
+                    self._driver.hear(message, self._supervisor.starts(self._config.driver))
             elif self._senders.sent(sample, "executive"):
                 self._screen.show(message)
                 if isinstance(message, ExecStatus):
                     self._take_result(message)
-
-    def _report_hardware(self, driver: DriverState) -> None:
-        """What a real robot waits for, on change: a person arms it."""
-        line = hardware_line(self._robot, driver)
-        if self._config.hardware and line != self._reported:
-            self._reported = line
-            self._screen.report(plain(line))
 
     def _take_result(self, status: ExecStatus) -> None:
         result = result_text(status.result, status.result_reason, status.result_detail)

@@ -101,7 +101,9 @@ def _advice(state: State, robot: str) -> str:
     reason = state.cause.reason if state.cause is not None else None
     if reason is Reason.DRIVER_NOT_ARMED:
         driver = state.arming.driver
-        return f"; {arming_advice(robot, driver.mode if driver is not None else '')}"
+        known = (driver.mode, driver.reason, driver.detail) if driver is not None else ("",)
+        advice = arming_advice(robot, *known)
+        return f"; {advice}" if advice else ""
     return f"; `tailor sim {robot}` or a driver of {robot} is expected" if reason is Reason.DRIVER_SILENT else ""
 
 

@@ -85,4 +85,5 @@ def state_line(guard: Guard, robot: str) -> str:
     if guard.mode is Mode.ARMED:
         return f"armed: obeys {guard.sender[:8]}"
     cause = reason_text(guard.reason, guard.detail)
-    return f"{guard.mode}: {cause}; {arming_advice(robot, guard.mode)} for an executive"
+    advice = arming_advice(robot, guard.mode, guard.reason)
+    return f"{guard.mode}: {cause}" + (f"; {advice} for an executive" if advice else "")

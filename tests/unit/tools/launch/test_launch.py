@@ -68,7 +68,7 @@ def test_only_the_first_start_of_an_executive_has_a_goal():
     executive = executive_process(config(), Senders())
     assert "--wait" not in executive.command_line(1)
     assert all("--wait" in executive.command_line(start) for start in (2, 3))
-    assert executive.restart_note == ", without a goal; next: tailor arm agilo, then tailor goal"
+    assert executive.restart_note == ", without a goal: arm the robot, then `tailor goal` sends one"
 
 
 def test_hardware_takes_the_simulators_place_and_gets_no_leave():

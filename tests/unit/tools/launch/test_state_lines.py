@@ -13,7 +13,8 @@ from tailor.schemas.messages import DriverState
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.tools.commands.run import executive, sim
-from tailor.tools.launch.arming_advice import hardware_line
+from tailor.simnodes.reasons import Reason as DriverReason
+from tailor.tools.launch.arming_advice import DriverLines, driver_line
 from tailor.tools.launch.state_lines import state_lines
 from tests.support.patience import wait_until
 
@@ -81,6 +82,23 @@ def test_an_executive_that_has_achieved_its_goal_names_the_next_step():
     assert executive.state_line(state, "agilo") == "achieved; `tailor goal` sends another goal"
 
 
+@pytest.mark.parametrize(
+    ("mode", "reason", "detail"),
+    [("stopped", "driver fault", "odom: silent for 0.5 s; not ready"), ("disarmed", "the driver ends", "")],
+    ids=["not ready", "ending"],
+)
+def test_an_executive_whose_driver_would_not_obey_advises_nobody_to_arm_it(mode, reason, detail):
+    driver = DriverState(0, mode, reason, detail, 1, "", 0)
+    state = State(belief=None, command=(), cause=Cause(Reason.DRIVER_NOT_ARMED, "its reason"), arming=Arming(driver))
+    assert executive.state_line(state, "agilo") == "DISARMED: driver not armed: its reason"
+
+
+def test_a_simulator_that_ends_advises_nobody_to_arm_it():
+    guard = Driver(shipped_driver_spec("agilo"), 1).guard
+    guard.disarm(DriverReason.SHUTDOWN)
+    assert sim.state_line(guard, "agilo") == "disarmed: the driver ends"
+
+
 def test_a_simulator_that_waits_names_the_command_that_arms_it():
     guard = Driver(shipped_driver_spec("agilo"), 1).guard
     assert sim.state_line(guard, "agilo") == "disarmed: just started; `tailor arm agilo` arms it for an executive"
@@ -95,8 +113,32 @@ def test_a_simulator_that_waits_names_the_command_that_arms_it():
         ("disarmed", "just started", "not ready: opening", "agilo is disarmed: just started: not ready: opening"),
         ("stopped", "driver fault", "no bus; not ready: x", "agilo is stopped: driver fault: no bus; not ready: x"),
         ("estopped", "e-stop", "", "agilo is estopped: e-stop (`tailor arm agilo --reset` arms it)"),
+        ("disarmed", "the driver ends", "", "agilo is disarmed: the driver ends"),
         ("armed", "", "", "agilo is armed"),
     ],
 )
-def test_nobody_is_told_to_arm_hardware_that_would_refuse_it(mode, reason, detail, line):
-    assert hardware_line("agilo", DriverState(0, mode, reason, detail, 1, "", 0)) == line
+def test_nobody_is_told_to_arm_a_driver_that_would_not_obey(mode, reason, detail, line):
+    assert driver_line("agilo", DriverState(0, mode, reason, detail, 1, "", 0)) == line
+
+
+STARTED = ("disarmed", "just started"), "agilo is disarmed: just started (`tailor arm agilo` arms it)"
+ARMED = ("armed", ""), "agilo is armed"
+ESTOPPED = ("estopped", "e-stop"), "agilo is estopped: e-stop (`tailor arm agilo --reset` arms it)"
+
+
+@pytest.mark.parametrize(
+    ("is_hardware", "states", "starts", "reported"),
+    [
+        (False, (STARTED, ARMED), 1, ()),
+        (False, (STARTED, ARMED, ESTOPPED, ESTOPPED, ARMED), 1, (ESTOPPED, ARMED)),
+        (False, (STARTED, STARTED, ARMED), 2, (STARTED, ARMED)),
+        (True, (STARTED, ARMED, ESTOPPED), 1, (STARTED, ARMED, ESTOPPED)),
+    ],
+    ids=["by its executive", "after a stop", "started again", "hardware"],
+)
+def test_a_launcher_names_the_command_once_people_have_to_arm_its_driver(is_hardware, states, starts, reported):
+    lines = []
+    driver = DriverLines("agilo", is_hardware, lines.append)
+    for (mode, reason), _ in states:
+        driver.hear(DriverState(0, mode, reason, "", 1, "", 0), starts)
+    assert lines == [line for _, line in reported]
