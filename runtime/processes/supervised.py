@@ -35,12 +35,14 @@ class ProcessSpec:
     `silence_ns`: kill the process after this long without a report of its loop, or if it is not ready in time; None: no
     limit. This is the only way to detect a hung loop whose bus threads still run.
     `arguments`: further arguments of the n-th start, from 1 on, such as a leave to arm that a restart must not have.
+    `must_begin`: it is not started again if its first start ends before it is ready: the caller gives up then.
     `restart_note`: what people have to know of each restart, to be read after "starting again in 0.2 s".
     """
 
     name: str
     argv: Sequence[str]
     restarts: bool = True
+    must_begin: bool = False
     silence_ns: int | None = None
     arguments: Callable[[int], Sequence[str]] = _no_arguments
     restart_note: str = ""
@@ -74,6 +76,11 @@ class Supervised:
         if self.start_at_ns is not None:
             return State.WAITING
         return State.STARTING if self.heard_ns is None else State.RUNNING
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether it has been ready, or was started again since."""
+        return self.starts > 1 or self.heard_ns is not None
 
     @property
     def missing(self) -> str:

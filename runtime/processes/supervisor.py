@@ -79,7 +79,8 @@ class Supervisor:
                 process.forgive(pause_ns, now_ns)
 
     def _died(self, process: Supervised, code: int, now_ns: int) -> None:
-        if not process.spec.restarts or code in FINAL_CODES:
+        gives_up = process.spec.must_begin and not process.has_begun
+        if not process.spec.restarts or code in FINAL_CODES or gives_up:
             process.over = True
             if code != 0:
                 self._report(f"{process.spec.name} ended with {code}; not started again")

@@ -60,13 +60,14 @@ def sim_process(config: LaunchConfig, senders: Senders, robot: str) -> ProcessSp
         return (*senders.arguments("sim", start), *leave)
 
     argv = tailor("sim", robot, *scene, "--connect", config.bus.endpoint)
-    return ProcessSpec("sim", argv, silence_ns=SIM_SILENCE_NS, arguments=arguments)
+    return ProcessSpec("sim", argv, must_begin=True, silence_ns=SIM_SILENCE_NS, arguments=arguments)
 
 
 def hardware_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     """The driver of a real robot. It gets no leave, so a person arms it after every start."""
     argv = tailor("driver", config.hardware, "--connect", config.bus.endpoint)
-    return ProcessSpec("driver", argv, silence_ns=SIM_SILENCE_NS, arguments=partial(senders.arguments, "driver"))
+    arguments = partial(senders.arguments, "driver")
+    return ProcessSpec("driver", argv, must_begin=True, silence_ns=SIM_SILENCE_NS, arguments=arguments)
 
 
 def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:

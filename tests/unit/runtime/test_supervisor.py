@@ -104,6 +104,26 @@ def test_people_are_told_what_a_restart_lacks(supervisor):
     assert supervisor.starts("executive") == 2
 
 
+def test_a_child_without_which_nothing_begins_is_announced_no_second_start_that_never_comes(supervisor):
+    supervisor.start(ProcessSpec("driver", ["x"], must_begin=True), 0)
+    FakeChild.made[0].code = -9
+    supervisor.poll(1 * S)
+    supervisor.poll(9 * S)
+    assert supervisor.reported == ["driver ended with -9; not started again"]
+    assert (len(FakeChild.made), supervisor.state("driver")) == (1, State.ENDED)
+
+
+def test_a_child_without_which_nothing_begins_is_started_again_once_it_was_ready(supervisor):
+    supervisor.start(ProcessSpec("driver", ["x"], must_begin=True), 0)
+    FakeChild.made[0].reported = Report(ready=True)
+    supervisor.poll(1 * S)
+    for k in (2, 12, 22):
+        FakeChild.made[-1].code = -9
+        supervisor.poll(k * S)
+        supervisor.poll((k + 1) * S)
+    assert (len(FakeChild.made), supervisor.state("driver")) == (4, State.STARTING)
+
+
 @pytest.mark.promise("P2")
 def test_a_crash_loop_is_given_up(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"]), 0)
