@@ -20,10 +20,12 @@ from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, open_bus
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
+from tailor.tools.operator.stop_button import HEAR_S, driver_states
 
 POLL_S = 0.01
 OTHERS_S = 0.35  # after the first executive is heard: every other one publishes its status within 0.1 s
 MAX_NAMED = 4
+NO_EXECUTIVE = "no executive is heard: none is running, or it stands still; expected one, or --sender"
 TEXTS = {
     Outcome.CONFIRMED: "{state}",
     Outcome.REFUSED: "refused: {refusal}; {state}",
@@ -58,11 +60,12 @@ def run(arguments: argparse.Namespace) -> int:
     with open_bus(arguments, "people") as session:
         sender = arguments.sender or ("" if arguments.off else _executive_sender(session))
         if not sender and not arguments.off:
-            _print(arguments, robot, "no executive", "no executive is running, expected one or --sender", None)
+            _print(arguments, robot, "no executive", NO_EXECUTIVE, None)
             return 1
         request = ArmRequest(not arguments.off, arguments.reset, sender, 0)
         outcome, exchange = _exchange(session, robot, request)
-    state = _text(robot, exchange.state)
+        others = "" if exchange.state is not None else _others(session)
+    state = _text(robot, exchange.state) + others
     withdrawn = "" if arguments.off else ", so it was taken back"
     text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn)
     _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.state)
@@ -126,6 +129,14 @@ def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Excha
         exchange.matched = exchange.matched or publisher.matched()
         time.sleep(POLL_S)
     return outcome
+
+
+def _others(session: Session) -> str:
+    """Whose drivers are heard, since the robot that was named has none: its name may be misspelt."""
+    with driver_states(session) as states:
+        time.sleep(HEAR_S)
+        states.poll()
+    return f"; drivers are heard of: {', '.join(sorted(states.newest)[:MAX_NAMED]) or 'none'}"
 
 
 def _text(robot: str, state: DriverState | None) -> str:

@@ -11,11 +11,14 @@ import argparse
 import json
 import sys
 
+from tailor.runtime.bus.service import no_service
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
 
 NOTHING = "(and)"  # without conditions: drops the open goal
+KEY = "exec/goal"
+NOBODY = f"{no_service(KEY)}: no executive is running, or it stands still; `tailor status` tells"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +36,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.cancel and arguments.goal is not None:
         raise UsageError("--cancel: expected without a goal; another goal replaces the open one by itself")
     with open_bus(arguments, "people") as session:
-        answers = session.call_all("exec/goal", NOTHING if arguments.cancel else arguments.goal or "")
+        answers = session.call_all(KEY, NOTHING if arguments.cancel else arguments.goal or "")
+    answers = [(accepted, NOBODY if answer == no_service(KEY) else answer) for accepted, answer in answers]
     everyone = all(accepted for accepted, _ in answers)
     if arguments.json:
         print(json.dumps({"accepted": everyone, "answer": "; ".join(answer for _, answer in answers)}))

@@ -12,8 +12,8 @@ from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.schemas.messages import DriverState
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import shipped_driver_spec
-from tailor.tools.commands.run import executive, sim
 from tailor.simnodes.reasons import Reason as DriverReason
+from tailor.tools.commands.run import executive, sim
 from tailor.tools.launch.arming_advice import DriverLines, driver_line
 from tailor.tools.launch.state_lines import state_lines
 from tests.support.patience import wait_until

@@ -1,0 +1,65 @@
+"""What `tailor arm` and `tailor goal` print when the one whom they mean is not heard."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.schemas.codec import encode
+from tailor.schemas.messages import DriverState
+from tailor.tools.commands.run import arm
+from tailor.tools.main import main
+from tailor.tools.operator import arming_exchange
+from tests.support.bus_system import bus_system
+
+
+@pytest.fixture(scope="module")
+def endpoint():
+    with bus_system() as (_, endpoint, _):
+        yield endpoint
+
+
+def test_a_goal_that_nobody_hears_says_what_may_be_wrong(endpoint, capsys):
+    assert main(["goal", "--json", "--connect", endpoint]) == 2
+    assert json.loads(capsys.readouterr().out) == {
+        "accepted": False,
+        "answer": "no service at exec/goal: no executive is running, or it stands still; `tailor status` tells",
+    }
+
+
+def test_arming_without_an_executive_says_what_may_be_wrong(endpoint, capsys, monkeypatch):
+    monkeypatch.setattr(arm, "WAIT_S", 0.2)
+    assert main(["arm", "agilo", "--connect", endpoint]) == 1
+    assert capsys.readouterr().out == (
+        "no executive is heard: none is running, or it stands still; expected one, or --sender\n"
+    )
+
+
+class HeardDrivers:
+    """A session on whose bus the drivers of some robots are heard."""
+
+    def __init__(self, *robots):
+        self.robots = robots
+
+    def subscribe_all(self, pattern):
+        queue, state = IngestQueue(), encode(DriverState(0, "disarmed", "just started", "", 1, "", 0))
+        for robot in self.robots:
+            queue.put(Raw(f"{robot}/driver", state, None, "", True, None))
+        return queue, SimpleNamespace(undeclare=lambda: None)
+
+
+@pytest.mark.parametrize(
+    ("robots", "text"),
+    [(("b21", "agilo"), "; drivers are heard of: agilo, b21"), ((), "; drivers are heard of: none")],
+)
+def test_a_robot_without_a_driver_is_answered_with_those_that_are_heard(robots, text):
+    assert arm._others(HeardDrivers(*robots)) == text
+
+
+def test_arming_a_misspelt_robot_ends_with_them(endpoint, capsys, monkeypatch):
+    monkeypatch.setattr(arming_exchange, "WAIT_S", 0.2)
+    monkeypatch.setattr(arm, "_others", lambda session: "; drivers are heard of: agilo")
+    assert main(["arm", "agil", "--sender", "a" * 32, "--connect", endpoint]) == 1
+    assert capsys.readouterr().out == "not sent; the driver of agil does not respond; drivers are heard of: agilo\n"
