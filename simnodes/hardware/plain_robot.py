@@ -22,6 +22,7 @@ from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.odometry_check import OdometryCheck
+from tailor.simnodes.hardware.other_ends import OtherEnds
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
 from tailor.simnodes.hardware.pose_doubt import Doubt
@@ -73,14 +74,17 @@ class PlainRobot(Hardware):
                 source = session.plain_source(address(settings.bus, topic)[0])
                 self._sources.append((source, kind, frame))
                 self._ends.append((Kind.SUBSCRIPTION, topic))
+        self._other_ends = OtherEnds(command.name, names.odom.strip("/"), time.monotonic())
         self._graph = session.graph_view(settings.bus.domain_id) if settings.bus.profile == "rmw_zenoh" else None
 
     def read(self) -> dict[str, Message]:
-        """The newest odometry, and at its rate the pose that follows from it."""
+        """The newest odometry, and at its rate the pose that follows from it; nothing before a base takes commands."""
         self._check_types()
         until_s = time.monotonic() + WAIT_S
-        while time.monotonic() < until_s:
-            moved = [message for message in self._received() if isinstance(message, Odometry)]
+        while (now_s := time.monotonic()) < until_s:
+            obeyed = self._other_ends.obeys(self._command.matched(), now_s)
+            moved = [message for message in self._received() if isinstance(message, Odometry)] if obeyed else []
+            self._other_ends.measures(bool(moved), now_s)
             if moved:
                 return {"odom": moved[-1], **self._pose(time.monotonic_ns())}
             time.sleep(POLL_S)

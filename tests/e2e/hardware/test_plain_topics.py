@@ -13,8 +13,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Odometry, PoseEstimate
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.plain_keys import address, named
-from tailor.simnodes.hardware.plain_robot import PlainRobot
-from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus
+from tailor.simnodes.hardware.plain_robot import TYPES, PlainRobot
+from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus, TopicNames
 from tailor.tools.commands.drivers.check_driver import _confirm
 from tailor.tools.launch.hardware import hardware_of
 from tests.support.bus_system import free_endpoint
@@ -34,8 +34,10 @@ def opened(profile):
         robot.open()
         try:
             odometry = base.plain_publisher(*address(bus, named("odom", "nav_msgs/msg/Odometry")))
+            taken = base.plain_source(address(bus, named("cmd_vel", TYPES["twist_stamped"]))[0])
             wait_until(odometry.matched)
             yield odometry, robot
+            assert taken is not None, "kept until here"
         finally:
             robot.close()
 
@@ -101,6 +103,19 @@ def test_a_localiser_that_is_lost_is_a_fault_and_gives_no_pose():
         later = replace(ODOMETRY, stamp_ns=2 * 10**9)
         odometry.publish_encoded(codec.encode(later))
         assert wait_until(robot.read) == {"odom": later}
+
+
+@pytest.mark.promise("P63")
+def test_a_base_that_takes_no_commands_gives_no_measurement_but_a_fault():
+    """It was armed, and the executive reported time-outs of its actions."""
+    with opened("plain") as (odometry, robot):
+        misspelt = PlainRobot(replace(robot._settings, topics=TopicNames(cmd_vel="cmd_vell")), robot._endpoint)
+        misspelt.open()
+        try:
+            with pytest.raises(ValueError, match="cmd_vell: nobody takes commands there, expected the base"):
+                wait_until(lambda: odometry.publish_encoded(codec.encode(ODOMETRY)) and misspelt.read())
+        finally:
+            misspelt.close()
 
 
 def test_a_wrong_frame_is_a_fault():

@@ -1,0 +1,45 @@
+"""Whether a robot is at the other ends of its topics: a misspelt name is silent in ROS 2. Pure.
+
+A base that comes later would obey a driver that was armed while nobody heard it: a person must arm that one again.
+"""
+
+from __future__ import annotations
+
+ABSENT_S = 1.5  # a base that is heard no more for as long has gone
+FIRST_S = 2.0  # from opening to the first odometry; the driver would give no name after 3 s
+
+
+class OtherEnds:
+    """Follows the subscribers of the command and the first odometry since the topics were opened."""
+
+    def __init__(self, command: str, odometry: str, now_s: float) -> None:
+        """`command`, `odometry`: names of the topics, for people; `now_s`: monotonic time of their opening."""
+        self._command, self._odometry = command, odometry
+        self._opened_s = self._obeyed_s = now_s
+        self._obeyed = self._measured = False
+
+    def obeys(self, matched: bool, now_s: float) -> bool:
+        """Whether somebody takes the commands, or has a moment ago.
+
+        Args:
+          matched: Whether the command's topic has a subscriber.
+          now_s: Monotonic time.
+
+        Raises:
+          ValueError: Nobody has for too long.
+        """
+        if matched:
+            self._obeyed, self._obeyed_s = True, now_s
+        elif now_s - self._obeyed_s > ABSENT_S:
+            raise ValueError(f"{self._command}: nobody takes commands there, expected the base (topics.cmd_vel)")
+        return self._obeyed
+
+    def measures(self, measured: bool, now_s: float) -> None:
+        """Note whether odometry has come since the last call.
+
+        Raises:
+          ValueError: None has come for too long since the opening.
+        """
+        self._measured = self._measured or measured
+        if not self._measured and now_s - self._opened_s > FIRST_S:
+            raise ValueError(f"{self._odometry}: nothing comes from there, expected odometry (topics.odom)")
