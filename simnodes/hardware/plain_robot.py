@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 
 from tailor.runtime.bus.inbox import Source
-from tailor.runtime.bus.opening import open_client
-from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
@@ -27,6 +25,7 @@ from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
 from tailor.simnodes.hardware.pose_doubt import Doubt
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker
+from tailor.simnodes.hardware.robots_bus import robots_session
 
 WAIT_S, POLL_S = 0.05, 0.002
 TYPES = {"twist": "geometry_msgs/msg/Twist", "twist_stamped": "geometry_msgs/msg/TwistStamped"}
@@ -56,10 +55,7 @@ class PlainRobot(Hardware):
         """Connect and subscribe."""
         settings, names = self._settings, self._settings.topics
         self._stack = ExitStack()
-        key = settings.bus.key
-        session = self._stack.enter_context(
-            open_client(self._endpoint, role="driver", identity=identity_in(key) if key else None)
-        )
+        session = self._stack.enter_context(robots_session(settings.bus, self._endpoint))
         self._stamps, self._pose_due_ns, self._check = {}, 0, OdometryCheck()
         command = named(names.cmd_vel, TYPES[settings.command])
         self._command = session.plain_publisher(*address(settings.bus, command))

@@ -1,8 +1,10 @@
 """A robot with plain topics as Hardware, in this process: what counts as a measurement, and what is a fault."""
 
+import socket
 import sys
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from io import StringIO
 
 import pytest
@@ -12,6 +14,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Odometry, PoseEstimate
 from tailor.schemas.typesystem import ros_type
+from tailor.simnodes.hardware import robots_bus
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_robot import TYPES, PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus, TopicNames
@@ -116,6 +119,21 @@ def test_a_base_that_takes_no_commands_gives_no_measurement_but_a_fault():
                 wait_until(lambda: odometry.publish_encoded(codec.encode(ODOMETRY)) and misspelt.read())
         finally:
             misspelt.close()
+
+
+@pytest.mark.parametrize("listens", [False, True], ids=["nobody", "another program"])
+def test_a_robots_router_that_does_not_respond_is_not_taken_for_tailors_own_bus(monkeypatch, listens):
+    """The advice was to start it with `tailor bus`."""
+    monkeypatch.setattr(robots_bus, "open_client", partial(open_client, timeout_s=0.3))
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
+        if not listens:
+            server.close()
+        robot = PlainRobot(PlainSettings("agilo", bus=RobotBus(endpoint)), free_endpoint())
+        why = "opens no session of zenoh" if listens else "the robot's router or bridge does not respond"
+        with pytest.raises(ConnectionError, match=rf"{endpoint}: {why}.* \(bus\.(connect|key)\)$"):
+            robot.open()
+        robot.close()
 
 
 def test_a_wrong_frame_is_a_fault():
