@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tailor.schemas.messages import DriverState
+from tailor.executive.core.modes import Mode
+from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.launch.processes import LaunchConfig
 
@@ -15,7 +16,7 @@ class OnceWatch:
     def __init__(self, config: LaunchConfig, starts: Callable[[str], int]) -> None:
         """`starts`: how often a process was started, by name."""
         self._starts, self._driver = starts, config.driver
-        self._stopped = ""
+        self._stopped = self._fault = ""
         # Only a simulator's first start is armed by itself; people arm hardware, perhaps a later start of its driver.
         self._armed_start: int | None = None if config.hardware else 1
 
@@ -27,10 +28,15 @@ class OnceWatch:
         cause = reason_text(driver.reason, driver.detail)
         self._stopped = f"failed: the driver is {driver.mode}: {cause}" if stopped else ""
 
+    def hear_executive(self, status: ExecStatus) -> None:
+        """Take a status of the own executive; in a fault its task has no result."""
+        cause = reason_text(status.reason, status.detail)
+        self._fault = f"failed: {cause}" if status.mode == Mode.FAULT else ""  # until people set another goal
+
     def failure(self) -> str:
         """Why the run has failed, or ""."""
-        if self._stopped:
-            return self._stopped
+        if self._stopped or self._fault:
+            return self._stopped or self._fault
         if self._starts("executive") > 1:
             return "failed: the executive was started again"
         if self._armed_start is not None and self._starts(self._driver) > self._armed_start:

@@ -24,6 +24,7 @@ from tailor.tools.cli.live_status import Screen
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.launch.arming_advice import DriverLines
 from tailor.tools.launch.child_output import ChildOutput
+from tailor.tools.launch.goal_advice import next_step
 from tailor.tools.launch.hosting import gateways, hosted_bus
 from tailor.tools.launch.once import OnceWatch
 from tailor.tools.launch.process_reports import ProcessReports
@@ -89,7 +90,7 @@ class _System:
         self._folder = RunFolderWatch(config.bus.endpoint)
         self._once = OnceWatch(config, supervisor.starts)
         self._driver = DriverLines(self._robot, bool(config.hardware), lambda line: screen.report(plain(line)))
-        self._result = ""
+        self._result = self._last_step = ""
 
     def run(self) -> str:
         """Start process after process, each once the one before is ready; then supervise them."""
@@ -140,14 +141,15 @@ class _System:
             elif self._senders.sent(sample, "executive"):
                 self._screen.show(message)
                 if isinstance(message, ExecStatus):
+                    self._once.hear_executive(message)
                     self._take_result(message)
 
     def _take_result(self, status: ExecStatus) -> None:
-        result = result_text(status.result, status.result_reason, status.result_detail)
-        if result and result != self._result and not self._config.once:
-            line = f'{result}. next: tailor goal "{status.goal}" pursues a goal; Ctrl-C stops the system'
+        self._result = result_text(status.result, status.result_reason, status.result_detail)
+        line = next_step(status, self._result)
+        if line and line != self._last_step and not self._config.once:
             self._screen.report(plain(line))
-        self._result = result
+        self._last_step = line
 
     def _poll(self, now_ns: int) -> None:
         self._output.poll()  # first: why a child has ended, then that it has

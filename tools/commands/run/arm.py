@@ -17,8 +17,10 @@ from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
+from tailor.simnodes.reasons import ArmRefusal, Mode
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, open_bus
+from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 from tailor.tools.operator.stop_button import HEAR_S, driver_states
 
@@ -28,7 +30,7 @@ MAX_NAMED = 4
 NO_EXECUTIVE = "no executive is heard: none is running, or it stands still; expected one, or --sender"
 TEXTS = {
     Outcome.CONFIRMED: "{state}",
-    Outcome.REFUSED: "refused: {refusal}; {state}",
+    Outcome.REFUSED: "refused: {refusal}; {state}{advice}",
     Outcome.CHANGED: "changed meanwhile, so the request was not repeated; {state}",
     Outcome.NO_CONFIRMATION: "sent, but not confirmed{withdrawn}; {state}",
     Outcome.NOT_SENT: "not sent, since nobody takes requests for {robot}; {state}",
@@ -67,7 +69,8 @@ def run(arguments: argparse.Namespace) -> int:
         others = "" if exchange.state is not None else _others(session)
     state = _text(robot, exchange.state) + others
     withdrawn = "" if arguments.off else ", so it was taken back"
-    text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn)
+    advice = _advice(robot, exchange.refusal)
+    text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn, advice=advice)
     _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.state)
     return 0 if outcome is Outcome.CONFIRMED else 1
 
@@ -129,6 +132,13 @@ def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Excha
         exchange.matched = exchange.matched or publisher.matched()
         time.sleep(POLL_S)
     return outcome
+
+
+def _advice(robot: str, refusal: str) -> str:
+    """The command that removes the cause of a refusal, where there is one."""
+    if refusal == ArmRefusal.ESTOP_LATCHED:
+        return f" ({arming_advice(robot, Mode.ESTOPPED)})"
+    return f" (`tailor arm {robot} --off` disarms it)" if refusal == ArmRefusal.OTHER_SENDER_ARMED else ""
 
 
 def _others(session: Session) -> str:

@@ -76,9 +76,14 @@ def run(arguments: argparse.Namespace) -> int:
             print(beginning(context, goal), flush=True)
         printed = state_lines(lambda: state_line(shell.state, context.domain.robot), print_states)
         with blamed_on_running_package(spec_of(arguments.domain)), printed:
-            state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and bool(state.task.result)))
+            state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and _is_over(state)))
     end.check()
     return 1 if arguments.once and state.task.result != "achieved" else 0
+
+
+def _is_over(state: State) -> bool:
+    """Whether nothing moves any more before people set another goal; in a fault the task has no result."""
+    return bool(state.task.result) or state.fault is not None
 
 
 def beginning(context: Context, goal: str) -> str:
@@ -104,6 +109,8 @@ def _advice(state: State, robot: str) -> str:
         known = (driver.mode, driver.reason, driver.detail) if driver is not None else ("",)
         advice = arming_advice(robot, *known)
         return f"; {advice}" if advice else ""
+    if reason is Reason.REPEATED_FAILURE:
+        return "; remove the cause, then `tailor goal` sends a goal"
     return f"; `tailor sim {robot}` or a driver of {robot} is expected" if reason is Reason.DRIVER_SILENT else ""
 
 

@@ -9,6 +9,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import DriverState
+from tailor.simnodes.reasons import ArmRefusal
 from tailor.tools.commands.run import arm
 from tailor.tools.main import main
 from tailor.tools.operator import arming_exchange
@@ -56,6 +57,22 @@ class HeardDrivers:
 )
 def test_a_robot_without_a_driver_is_answered_with_those_that_are_heard(robots, text):
     assert arm._others(HeardDrivers(*robots)) == text
+
+
+@pytest.mark.parametrize(
+    ("refusal", "advice"),
+    [
+        (ArmRefusal.ESTOP_LATCHED, " (`tailor arm agilo --reset` arms it)"),
+        (ArmRefusal.OTHER_SENDER_ARMED, " (`tailor arm agilo --off` disarms it)"),
+        (ArmRefusal.NOT_READY, ""),
+    ],
+)
+def test_a_refusal_names_the_command_that_removes_its_cause(endpoint, capsys, monkeypatch, refusal, advice):
+    before = DriverState(0, "disarmed", "just started", "", 1, "", 0)
+    exchange = SimpleNamespace(state=before, refusal=refusal.value)
+    monkeypatch.setattr(arm, "_exchange", lambda *_: (arming_exchange.Outcome.REFUSED, exchange))
+    assert main(["arm", "agilo", "--sender", "a" * 32, "--connect", endpoint]) == 1
+    assert capsys.readouterr().out == f"refused: {refusal}; agilo is disarmed: just started{advice}\n"
 
 
 def test_arming_a_misspelt_robot_ends_with_them(endpoint, capsys, monkeypatch):

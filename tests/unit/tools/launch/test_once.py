@@ -1,12 +1,15 @@
 """What ends `tailor up --once` besides a result."""
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
 from tailor.executive.composition import ExecutiveConfig
-from tailor.schemas.messages import DriverState
+from tailor.schemas.messages import DriverState, ExecStatus
+from tailor.schemas.own import example
 from tailor.tools.cli.systems.bus_settings import BusSettings
+from tailor.tools.launch.goal_advice import next_step
 from tailor.tools.launch.once import OnceWatch
 from tailor.tools.launch.processes import LaunchConfig
 
@@ -34,6 +37,35 @@ def test_a_stop_ends_the_run_unless_people_arm_the_robot_again_before_it_was_not
     assert run.watch.failure() == f"failed: the driver is {mode}: e-stop"
     run.hear("armed")
     assert run.watch.failure() == ""
+
+
+def test_a_fault_of_the_executive_ends_the_run_unless_people_set_another_goal_before_it_was_noticed():
+    """It has no result, so the run stood for ever."""
+    run, fault = (
+        Run(),
+        replace(example(ExecStatus), mode="FAULT", reason="repeated failure", detail="goToPose", result=""),
+    )
+    run.watch.hear_executive(fault)
+    assert run.watch.failure() == "failed: repeated failure: goToPose"
+    run.watch.hear_executive(replace(fault, mode="EXECUTING"))
+    assert run.watch.failure() == ""
+
+
+@pytest.mark.parametrize(
+    ("mode", "result", "line"),
+    [
+        ("EXECUTING", "", ""),
+        ("READY", "achieved", 'achieved. next: tailor goal "(at a)" pursues a goal; Ctrl-C stops the system'),
+        (
+            "FAULT",
+            "",
+            'FAULT: stuck. next: remove the cause, then tailor goal "(at a)" pursues a goal; Ctrl-C stops the system',
+        ),
+    ],
+)
+def test_a_run_that_does_not_end_by_itself_names_the_next_step(mode, result, line):
+    status = replace(example(ExecStatus), mode=mode, reason="stuck", detail="", goal="(at a)")
+    assert next_step(status, result) == line
 
 
 @pytest.mark.parametrize("hardware", ["", "robot.toml"])

@@ -3,6 +3,7 @@
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -62,6 +63,7 @@ def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
     [
         (Reason.DRIVER_SILENT, "; `tailor sim agilo` or a driver of agilo is expected"),
         (Reason.DRIVER_NOT_ARMED, "; `tailor arm agilo` arms it"),
+        (Reason.REPEATED_FAILURE, "; remove the cause, then `tailor goal` sends a goal"),
         (Reason.INPUT_STALE, ""),
     ],
 )
@@ -91,6 +93,14 @@ def test_an_executive_whose_driver_would_not_obey_advises_nobody_to_arm_it(mode,
     driver = DriverState(0, mode, reason, detail, 1, "", 0)
     state = State(belief=None, command=(), cause=Cause(Reason.DRIVER_NOT_ARMED, "its reason"), arming=Arming(driver))
     assert executive.state_line(state, "agilo") == "DISARMED: driver not armed: its reason"
+
+
+def test_an_executive_that_runs_once_ends_in_a_fault_as_well_as_with_a_result():
+    """In a fault its task has no result: `tailor executive --once` stood for ever."""
+    state = State(belief=None, command=(), task=Task(goal="(at a)", active=True))
+    assert not executive._is_over(state)
+    assert executive._is_over(replace(state, fault=Cause(Reason.REPEATED_FAILURE, "goToPose")))
+    assert executive._is_over(replace(state, task=Task(result=Result.FAILED)))
 
 
 def test_a_simulator_that_ends_advises_nobody_to_arm_it():
