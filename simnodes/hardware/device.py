@@ -7,6 +7,7 @@ answers; then the hardware is closed, and opened again by the retry policy.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
@@ -52,6 +53,9 @@ class Device:
         self._readings: deque[tuple[int, Mapping[str, Message]]] = deque(maxlen=MAX_READINGS)
         self._keeps = tuple(limit.kept is not None for limit in limits)
         self._values, self._handed_ns = tuple(limit.kept or 0.0 for limit in limits), clock.now_ns()
+        self._kept: tuple[float, ...] | None = None  # newest set-points of axes that stay as they are
+        self._follows = any(self._keeps) and type(hardware).kept is not Hardware.kept
+        self._awaits_kept = self._follows  # the present set-points would move such an axis, e.g. close an open gripper
         self._ended, self._broken = threading.Event(), threading.Event()
         self._faults, self._opened_ns, self._closed = 0, 0, False
         self._main = threading.Thread(target=self._live, name="hardware", daemon=True)
@@ -74,9 +78,22 @@ class Device:
             waiting.append(self._readings.popleft())
         return waiting
 
-    def hand(self, values: tuple[float, ...], now_ns: int) -> None:
-        """Set the set-points that are written from now on."""
+    @property
+    def kept(self) -> Callable[[], Sequence[float]] | None:
+        """Set-points at which axes that keep theirs stay as they are; None: unknown."""
+        kept = self._kept
+        return None if kept is None else lambda: kept
+
+    def hand(self, values: tuple[float, ...], now_ns: int, may_move: bool = True) -> None:
+        """Set the set-points that are written from now on.
+
+        Args:
+          values: Set-points.
+          now_ns: Monotonic time.
+          may_move: Whether an axis that keeps its set-point may move by them: the robot is armed, or stays as it is.
+        """
         self._values, self._handed_ns = values, now_ns
+        self._awaits_kept = self._awaits_kept and not may_move
 
     def fail(self, fault: str) -> None:
         """A watchdog of the loop found a fault."""
@@ -121,6 +138,7 @@ class Device:
     def _work(self) -> None:
         self.fault, self._values = "", self._standstill()  # nothing from before the fault, should the loop hang
         self._handed_ns = self._clock.now_ns()
+        self._kept, self._awaits_kept = None, self._follows
         self._readings.clear()
         self.phase = Phase.RUNNING
         threads = [threading.Thread(target=each, daemon=True) for each in (self._read, self._write)]
@@ -146,11 +164,18 @@ class Device:
             if measured and not isinstance(measured, Mapping):
                 raise TypeError(f"returned {type(measured).__name__}, expected messages by topic")
             if measured:
+                self._follow()
                 self._readings.append((self._clock.now_ns(), measured))
             else:
                 self._ended.wait(IDLE_S)
 
         self._repeat("read", take)
+
+    def _follow(self) -> None:
+        kept = self._hardware.kept()
+        if kept is not None and (len(kept) != len(self._keeps) or not all(map(math.isfinite, kept))):
+            raise ValueError(f"kept returned {kept}, expected {len(self._keeps)} numbers")
+        self._kept = self._kept if kept is None else tuple(kept)
 
     def _write(self) -> None:
         period_ns, due_ns = round(1e9 / self._hardware.write_hz), 0
@@ -160,12 +185,13 @@ class Device:
             nonlocal due_ns, last
             now_ns = self._clock.now_ns()
             values = self._values if now_ns - self._handed_ns <= SILENT_LOOP_NS else self._standstill()
-            if values != last or now_ns >= due_ns:
+            if not self._awaits_kept and (values != last or now_ns >= due_ns):
                 due_ns, last = now_ns + period_ns, values
                 self._hardware.write(values)
 
         self._repeat("write", give, pause_s=0.005)
-        self._calls.made("write", lambda: self._hardware.write(self._standstill()))
+        if not self._awaits_kept:
+            self._calls.made("write", lambda: self._hardware.write(self._standstill()))
 
     def _standstill(self) -> tuple[float, ...]:
         return tuple(value if keeps else 0.0 for value, keeps in zip(self._values, self._keeps, strict=True))

@@ -42,6 +42,18 @@ class Hardware:
         """
         raise NotImplementedError
 
+    def kept(self) -> tuple[float, ...] | None:
+        """Set-points at which axes with `kept` in `driver.toml`, such as a gripper, stay as they are.
+
+        Called after each `read` that has measured something, in its thread. While nobody has armed the robot they are
+        written in the place of the last ones; before the first of them nothing is written at all.
+
+        Returns:
+          One for each axis, of which only those with `kept` count, e.g. the width that a gripper is set to, so that it
+          goes on holding a cup. None: unknown. A class without this method keeps the last set-point, at first `kept`.
+        """
+        return None
+
     def write(self, values: tuple[float, ...]) -> None:
         """Send set-points that the guard has passed, while another thread waits in `read`.
 

@@ -17,7 +17,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
-from tailor.simnodes.guard import Reason
+from tailor.simnodes.guard import Mode, Reason
 from tailor.simnodes.hardware.device import Device, Phase
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.watchdogs import FOREVER, RetryPolicy, SensorWatch, watched_sensors
@@ -168,7 +168,8 @@ class HardwareNode:
         self._report(f"not ready: {unready}" if unready else "ready")
 
     def _hand(self, now_ns: int) -> None:
-        self.device.hand(self.driver.guard.output(now_ns), now_ns)
+        kept, armed = self.device.kept, self.driver.guard.mode is Mode.ARMED
+        self.device.hand(self.driver.set_points(now_ns, kept), now_ns, armed or kept is not None)
 
     def _publish_state(self, now_ns: int) -> None:
         state = self.driver.state(now_ns, wall_ns())
