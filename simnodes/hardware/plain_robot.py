@@ -19,11 +19,11 @@ from tailor.schemas.ros2.plain import frame_in, twist_bytes
 from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.interface import Hardware
+from tailor.simnodes.hardware.localiser_check import Doubt
 from tailor.simnodes.hardware.odometry_check import OdometryCheck
 from tailor.simnodes.hardware.other_ends import OtherEnds
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
-from tailor.simnodes.hardware.pose_doubt import Doubt
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker
 from tailor.simnodes.hardware.robots_bus import robots_session
 

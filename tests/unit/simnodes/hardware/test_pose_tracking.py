@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tailor.schemas.messages import Odometry, PoseEstimate
-from tailor.simnodes.hardware.pose_doubt import Doubt
+from tailor.simnodes.hardware.localiser_check import Doubt
 from tailor.simnodes.hardware.pose_tracking import Drift, PoseTracker, composed, inverse
 
 POSES = st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-3, 3))
@@ -205,3 +205,17 @@ def test_a_robot_without_a_localiser_is_carried_on_for_ever():
     tracker = PoseTracker((0.0, 0.0, 0.0), Drift())
     assert not any(tracker.move(odometry(0.1 + 0.1 * k, 0.05 * k, 0.0, 0.0)) for k in range(2000))
     assert tracker.pose().x == pytest.approx(99.95)
+
+
+@pytest.mark.promise("P63")
+def test_two_localisers_make_the_pose_unknown_until_one_speaks_alone():
+    tracker, faults = PoseTracker(None, Drift(), LIMITS), []
+    for k in range(1, 9):
+        tracker.move(odometry(0.1 * k, 0.0, 0.0, 0.0))
+        faults.append(tracker.correct(seen(0.1 * k, 1.0 * (k % 2), 0.0, 0.0)))
+        if faults[-1]:
+            break
+    assert faults[-1] == "jumps to and fro, expected one localiser"
+    assert tracker.pose() is None
+    tracker.correct(seen(0.1 * k, 7.0, 3.0, 1.0))
+    near(tracker.pose(), (7.0, 3.0, 1.0))
