@@ -1,6 +1,6 @@
 """When nobody knows where the robot is: the localiser says so, is silent for too long, or contradicts itself. Pure.
 
-Poses that jump to and fro are those of two localisers on one topic, or of one that is lost and does not say so. One
+Poses that jump back and forth are those of two localisers on one topic, or of one that is lost and does not say so. One
 jump is none: a localiser that finds the robot elsewhere corrects itself once.
 """
 
@@ -63,4 +63,4 @@ class LocaliserCheck:
         if max(self._excess) <= EXCESS:
             return ""
         self._excess = [0.0, 0.0]
-        return "jumps to and fro, expected one localiser"
+        return "jumps back and forth, expected one localiser"

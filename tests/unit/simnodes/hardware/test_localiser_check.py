@@ -7,7 +7,7 @@ import pytest
 from tailor.schemas.messages import PoseEstimate
 from tailor.simnodes.hardware.localiser_check import LocaliserCheck
 
-FAULT = "jumps to and fro, expected one localiser"
+FAULT = "jumps back and forth, expected one localiser"
 
 
 def first_fault_s(places, rate_hz):

@@ -215,7 +215,7 @@ def test_two_localisers_make_the_pose_unknown_until_one_speaks_alone():
         faults.append(tracker.correct(seen(0.1 * k, 1.0 * (k % 2), 0.0, 0.0)))
         if faults[-1]:
             break
-    assert faults[-1] == "jumps to and fro, expected one localiser"
+    assert faults[-1] == "jumps back and forth, expected one localiser"
     assert tracker.pose() is None
     tracker.correct(seen(0.1 * k, 7.0, 3.0, 1.0))
     near(tracker.pose(), (7.0, 3.0, 1.0))
