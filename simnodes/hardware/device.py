@@ -56,6 +56,7 @@ class Device:
         self._kept: tuple[float, ...] | None = None  # newest set-points of axes that stay as they are
         self._follows = any(self._keeps) and type(hardware).kept is not Hardware.kept
         self._awaits_kept = self._follows  # the present set-points would move such an axis, e.g. close an open gripper
+        self._at_rest = True  # nothing was written, or standstill last
         self._ended, self._broken = threading.Event(), threading.Event()
         self._faults, self._opened_ns, self._closed = 0, 0, False
         self._main = threading.Thread(target=self._live, name="hardware", daemon=True)
@@ -138,7 +139,7 @@ class Device:
     def _work(self) -> None:
         self.fault, self._values = "", self._standstill()  # nothing from before the fault, should the loop hang
         self._handed_ns = self._clock.now_ns()
-        self._kept, self._awaits_kept = None, self._follows
+        self._kept, self._awaits_kept = None, self._follows and self._at_rest  # to stop the robot comes first
         self._readings.clear()
         self.phase = Phase.RUNNING
         threads = [threading.Thread(target=each, daemon=True) for each in (self._read, self._write)]
@@ -186,12 +187,12 @@ class Device:
             now_ns = self._clock.now_ns()
             values = self._values if now_ns - self._handed_ns <= SILENT_LOOP_NS else self._standstill()
             if not self._awaits_kept and (values != last or now_ns >= due_ns):
-                due_ns, last = now_ns + period_ns, values
+                due_ns, last, self._at_rest = now_ns + period_ns, values, False
                 self._hardware.write(values)
 
         self._repeat("write", give, pause_s=0.005)
         if not self._awaits_kept:
-            self._calls.made("write", lambda: self._hardware.write(self._standstill()))
+            self._at_rest = not self._calls.made("write", lambda: self._hardware.write(self._standstill()))
 
     def _standstill(self) -> tuple[float, ...]:
         return tuple(value if keeps else 0.0 for value, keeps in zip(self._values, self._keeps, strict=True))

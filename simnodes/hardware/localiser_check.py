@@ -44,7 +44,7 @@ class LocaliserCheck:
         self._excess = [0.0, 0.0]  # m, rad
 
     def fault(self, seen: PoseEstimate, expected: tuple[float, float, float]) -> str:
-        """Take a pose into account.
+        """Take a pose into account; without a stamp it is not judged.
 
         Args:
           seen: Pose of the localiser.
@@ -53,6 +53,8 @@ class LocaliserCheck:
         Returns:
           Text if its corrections contradict each other.
         """
+        if not seen.stamp_ns:
+            return ""
         passed_s = min(MAX_STEP_S, max(0.0, 1e-9 * (seen.stamp_ns - self._last_ns)))
         self._last_ns = seen.stamp_ns
         corrections = math.dist((seen.x, seen.y), expected[:2]), abs(math.remainder(seen.phi - expected[2], math.tau))

@@ -27,7 +27,11 @@ class Gripping(Faulty):
 
     def __init__(self, width=None):
         super().__init__()
-        self.width = width
+        self.width, self.taken = width, []  # set-points that were written without an error
+
+    def write(self, values):
+        super().write(values)
+        self.taken.append(values)
 
     def kept(self):
         return None if self.width is None else (0.0, self.width)
@@ -70,6 +74,21 @@ def test_nothing_is_written_before_it_is_known_how_wide_a_gripper_is_also_after_
     assert len(hardware.written) - written <= 1, "at most that of the last fault"
     hardware.width = 0.06
     wait_until(lambda: hardware.written[-1] == (0.0, 0.06), "the width of now", 5)
+
+
+def test_a_robot_that_could_not_be_stopped_is_stopped_before_that_is_known(robot):  # noqa: F811
+    hardware = Gripping(0.08)
+    driven = robot(hardware, spec=SPEC)
+    wait_until(lambda: not driven.node.driver.unready and hardware.written, "set-points", 5)
+    driven.send(ArmRequest(True, False, EXECUTIVE, 0), "arm_request", PERSON)
+    driven.send(VelocityCommand(0, 0.5, 0.1), "cmd_vel")
+    wait_until(lambda: hardware.written[-1] == (0.5, 0.1), "motion", 5)
+    hardware.width, hardware.raises = None, {"write"}
+    wait_until(driven.is_in("stopped"), "stop", 5)
+    wait_until(lambda: hardware.calls["close"], "closed", 5)
+    assert hardware.taken[-1] == (0.5, 0.1)
+    hardware.raises = set()
+    wait_until(lambda: hardware.taken[-1][0] == 0.0, "standstill", 5)
 
 
 @pytest.mark.parametrize(("kept", "fault"), [((0.0,), "kept returned"), ((0.0, math.nan), "kept returned")])

@@ -35,6 +35,11 @@ def test_a_localiser_that_finds_the_robot_elsewhere_now_and_then_has_no_fault():
     assert first_fault_s(places, 10.0) is None
 
 
+def test_poses_without_stamps_are_not_judged():
+    check, here, there = LocaliserCheck(), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+    assert not any(check.fault(PoseEstimate(0, *there, 1e-4, 1e-4, 1e-4), here) for _ in range(100))
+
+
 def test_a_noisy_localiser_has_no_fault():
     draw = random.Random(1)
     places = [tuple(draw.gauss(0.0, 0.06) for _ in range(3)) for _ in range(5000)]
