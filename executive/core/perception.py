@@ -52,6 +52,8 @@ def disarmed(context: Context, state: State) -> Cause | None:
         return Cause(Reason.DRIVER_NOT_ARMED, reason_text(driver.mode, reason_text(driver.reason, driver.detail)))
     if driver.armed_sender != context.sender:
         return Cause(Reason.DRIVER_OBEYS_ANOTHER, driver.armed_sender[:8])
+    if state.arming.rearmed:
+        return Cause(Reason.DRIVER_NOT_ARMED, "disarmed and armed again meanwhile")
     return None
 
 
@@ -80,7 +82,7 @@ def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) 
 
 def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) -> Arming:
     """The driver's newest state. Another sender counts only once the known one is silent, e.g. after a restart."""
-    key = key_of("driver", context.domain.robot)
+    key, arming = key_of("driver", context.domain.robot), replace(arming, rearmed=False)
     if arming.heard_ns is None:
         arming = replace(arming, heard_ns=now_ns)
     for sample in inputs.samples:
@@ -93,8 +95,16 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
                     driver_sender=sample.sender,
                     heard_ns=sample.arrival_ns,
                     echo_age_ns=echo_age_ns(sample.message, sample.arrival_ns, context.stamp_offset_ns),
+                    rearmed=arming.rearmed or _rearmed(arming.driver, sample.message),
                 )
     return arming
+
+
+def _rearmed(known: DriverState | None, now: DriverState) -> bool:
+    """Whether a driver that was armed no longer is, or was armed again: since arming it has passed no command."""
+    if known is None or known.mode != "armed":
+        return False
+    return now.mode != "armed" or (known.command_stamp_ns != 0 and now.command_stamp_ns == 0)
 
 
 def _with_goal(context: Context, state: State, goal: str) -> State:

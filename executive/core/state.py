@@ -48,6 +48,7 @@ class Arming:
     driver_sender: str = ""  # of that state; "" before the first one: the first sender counts
     heard_ns: int | None = None  # arrival of that state; before the first one: the first tick
     echo_age_ns: int = 0  # age of the newest command that it echoes, at its arrival; 0: none
+    rearmed: bool = False  # since the last tick: it was disarmed and armed again, while this process stood still
     requested_epoch: int = 0  # 0: no request yet
     requested_ns: int = 0
     requests: int = 0  # so far

@@ -373,6 +373,32 @@ def test_after_a_stop_planning_starts_again_from_the_robots_place():
 
 
 @pytest.mark.promise("P6")
+@pytest.mark.parametrize("between", [[], ["estopped"]], ids=["unheard", "heard in the same tick"])
+def test_nothing_outlasts_a_stop_that_came_and_went_while_the_executive_stood_still(between):
+    """Its driver is armed when it goes on, as before; only that no command has passed since arming tells."""
+
+    def told(n, mode, stamp_ns):
+        sample = driver(n * TICK, mode)
+        return dataclasses.replace(sample, message=dataclasses.replace(sample.message, command_stamp_ns=stamp_ns))
+
+    def world(n, given, x):
+        armed = told(n, "armed", 0 if n in (1, 6) else n * TICK)
+        states = [*(told(n, mode, 5 * TICK) for mode in between if n == 6), armed]
+        return Inputs((odometry(n * TICK, x, n), *states), given.goal)
+
+    run = list(drive(line_context(), world=world))
+    assert run[4][0].task.running is not None
+    stopped, outputs, _ = run[5]
+    assert (stopped.mode, stopped.task.running, stopped.task.decision) == (Mode.DISARMED, None, None)
+    assert not [output for output in outputs if isinstance(output.message, VelocityCommand)]
+    ways = [
+        (output.message.way, state.tick) for state, outputs, _ in run for output in outputs if output.topic == "plan"
+    ]
+    assert ways[1] == ("searched", 7)
+    assert run[-1][0].task.result == "achieved"
+
+
+@pytest.mark.promise("P6")
 def test_a_decision_that_no_action_has_begun_yet_does_not_outlast_a_stop():
     """A person carries the robot meanwhile: what was decided for the old place is not driven from the new one."""
     first = next(n for n, (state, _, _) in enumerate(drive(line_context())) if state.task.decision is not None) + 1
