@@ -131,9 +131,8 @@ class EpisodeExtractor:
                 values[k] = values[k] if believed is None else believed  # a cup's spot is no state of the robot
         if run.action.arguments is unchanged:
             return values
-        arguments = run.action.arguments(values[None, :])[
-            0
-        ]  # mapped ones are those of the start, then those of the goal
+        # mapped ones are those of the start, then those of the goal
+        arguments = run.action.arguments(values[None, :])[0]
         return np.concatenate([arguments[: len(arguments) // 2], run.goal[len(arguments) // 2 :]])
 
     def _observe(self, message: Message) -> None:
