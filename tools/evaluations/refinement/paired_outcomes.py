@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tailor.tools.evaluations.oracles.baselines import bias_s
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import (
     MIN_UNITS,
@@ -23,7 +24,6 @@ from tailor.tools.evaluations.paired_comparison import (
     ratio_interval,
     without_intervals,
 )
-from tailor.tools.evaluations.refinement.baselines import bias_s
 
 Outcomes = Mapping[int, Outcome]  # by seed
 Start = tuple[str, int]  # scenario, seed

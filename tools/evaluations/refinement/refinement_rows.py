@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import Any
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
+from tailor.tools.evaluations.oracles.baselines import against_oracle
 from tailor.tools.evaluations.oracles.grid import grid_size, simulate_choices, subgoal_parameters
 from tailor.tools.evaluations.oracles.search import search_choices
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
-from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import Pair, Start, columns
 from tailor.tools.evaluations.refinement.settings_flag import settings_from
 from tailor.tools.evaluations.seeds import Seeds

@@ -21,6 +21,7 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live import live
 from tailor.tools.evaluations.models import learning_curves
 from tailor.tools.evaluations.oracles import grid
+from tailor.tools.evaluations.oracles.baselines import against_oracle
 from tailor.tools.evaluations.oracles.grid import _judged, _values, subgoal_parameters
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_pairs
@@ -37,7 +38,6 @@ from tailor.tools.evaluations.refinement import (
     table3,
     table4,
 )
-from tailor.tools.evaluations.refinement.baselines import against_oracle
 from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_better
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired, run_one
