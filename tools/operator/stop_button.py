@@ -6,7 +6,7 @@ Loads neither NumPy nor rosbags before the first e-stops are out: their 0.2 s wo
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from threading import Lock
 
@@ -66,8 +66,12 @@ class StopButton:
         self._publisher = session.publisher("estop", "")
         self._lock = Lock()
 
-    def press(self, wait_s: float = WAIT_S) -> dict[str, DriverState]:
-        """Publish the e-stop until every driver that is heard confirms it, for `wait_s` at most.
+    def press(self, wait_s: float = WAIT_S, expected: Collection[str] = ()) -> dict[str, DriverState]:
+        """Publish the e-stop until every driver that is heard, and each that is expected, confirms it.
+
+        Args:
+          wait_s: For that long at most.
+          expected: Robots whose drivers are known to run: one that has frozen is not heard.
 
         Returns:
           The newest state of each driver, by robot.
@@ -81,17 +85,19 @@ class StopButton:
                     self._publisher.publish_encoded(STOP)
                     if elapsed_s >= FIRST_S:
                         states.poll()
-                    if elapsed_s >= HEAR_S and all_stopped(states.newest):
+                    if elapsed_s >= HEAR_S and all_stopped(states.newest, expected):
                         break
                 return states.newest
 
 
-def all_stopped(states: Mapping[str, DriverState]) -> bool:
-    """Whether there is a driver and every one has latched the e-stop."""
-    return bool(states) and all(state.mode == "estopped" for state in states.values())
+def all_stopped(states: Mapping[str, DriverState], expected: Collection[str] = ()) -> bool:
+    """Whether there is a driver, and every one, each of the expected robots' included, has latched the e-stop."""
+    heard = bool(states) and states.keys() >= set(expected)
+    return heard and all(state.mode == "estopped" for state in states.values())
 
 
-def summary(states: Mapping[str, DriverState]) -> str:
-    """One line a driver: its mode."""
-    lines = [f"{robot} is {state.mode}" for robot, state in sorted(states.items())]
-    return "\n".join(lines) or "no driver is on the bus"
+def summary(states: Mapping[str, DriverState], expected: Collection[str] = ()) -> str:
+    """One line a driver: its mode, or that it is expected and not heard."""
+    lines = {robot: f"{robot} is {state.mode}" for robot, state in states.items()}
+    lines |= {robot: f"{robot} is SILENT: its state is unknown" for robot in expected if robot not in states}
+    return "\n".join(line for _, line in sorted(lines.items())) or "no driver is on the bus"

@@ -89,6 +89,32 @@ def test_without_a_confirmation_the_button_gives_up_in_time_and_reports_it(drive
     assert summary(states) == ("agilo is armed" if states else "no driver is on the bus")
 
 
+def test_an_expected_driver_that_is_silent_has_not_stopped():
+    bus = Bus(agilo=confirms())
+    states = StopButton(bus).press(0.6, ["agilo", "nomad"])
+    assert all_stopped(states)
+    assert not all_stopped(states, ["nomad", "agilo"])
+    assert summary(states, ["nomad"]) == "agilo is estopped\nnomad is SILENT: its state is unknown"
+    assert summary({}, ["nomad"]) == "nomad is SILENT: its state is unknown"
+
+
+def test_an_expected_driver_is_awaited():
+    began_s = time.monotonic()
+
+    def late(count):
+        return encode(state("estopped")) if time.monotonic() > began_s + 0.6 else None
+
+    states = StopButton(Bus(agilo=confirms(), nomad=late)).press(5.0, ["nomad"])
+    assert all_stopped(states, ["agilo", "nomad"])
+
+
+@pytest.mark.parametrize(("expected", "code"), [((), 0), (("agilo",), 0), (("agilo", "nomad"), 1), (("agillo",), 1)])
+def test_the_command_is_done_if_those_that_it_expects_have_stopped(monkeypatch, capsys, expected, code):
+    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext(Bus(agilo=confirms())))
+    assert main(["estop", "--json", *(("--expect", *expected) if expected else ())]) == code
+    assert json.loads(capsys.readouterr().out) == {"stopped": code == 0, "drivers": {"agilo": "estopped"}}
+
+
 def test_a_newer_state_counts_and_junk_does_not():
     queue = IngestQueue()
     states = stop_button.DriverStates(queue)
@@ -159,7 +185,7 @@ def test_what_people_read_of_a_held_switch_is_no_part_of_the_json(monkeypatch, c
             self.report("agilo is armed: hears this switch")
 
     monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext("a session"))
-    monkeypatch.setattr(estop, "StopButton", lambda session: SimpleNamespace(press=dict))
+    monkeypatch.setattr(estop, "StopButton", lambda session: SimpleNamespace(press=lambda **_: {}))
     monkeypatch.setattr(dead_mans_switch, "DeadMansSwitch", Switch)
     monkeypatch.setattr(dead_mans_switch, "stop_on_signals", lambda: SimpleNamespace(requested=True))
     assert main(["estop", "--hold", "--json"]) == 1

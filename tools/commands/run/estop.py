@@ -2,6 +2,8 @@
 
 With --hold this terminal becomes a dead man's switch: every driver that hears it stops when this program ends, however
 it ends. Any key, Ctrl-C or closing the terminal ends it.
+
+A driver that has frozen is not heard. With --expect ROBOT it counts as not stopped; every other driver is stopped, too.
 """
 
 from __future__ import annotations
@@ -18,12 +20,19 @@ from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor estop`."""
     parser.add_argument("--hold", action="store_true", help="hold a dead man's switch instead: releasing it stops")
+    parser.add_argument(
+        "--expect",
+        metavar="ROBOT",
+        nargs="+",
+        default=[],
+        help="robots whose drivers must confirm; without it, those that are heard. Every robot is stopped either way",
+    )
     parser.add_argument("--json", action="store_true", help="print each driver's mode as JSON")
     configure_bus(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if every driver on the bus has stopped, 1 if one has not or there is none."""
+    """0 if every driver that is heard or expected has stopped, 1 if one has not or there is none."""
     with open_bus(arguments, "people") as session:
         button = StopButton(session)
         try:
@@ -32,9 +41,10 @@ def run(arguments: argparse.Namespace) -> int:
 
                 hold_in_terminal(session, sys.stderr if arguments.json else sys.stdout)
         finally:  # whatever ended it
-            states = button.press()
-    print(_json(states) if arguments.json else summary(states))
-    if all_stopped(states):
+            states = button.press(expected=arguments.expect)
+    stopped = all_stopped(states, arguments.expect)
+    print(_json(states, stopped) if arguments.json else summary(states, arguments.expect))
+    if stopped:
         return 0
     key = bus_settings(arguments).key
     if key:  # another role is not told that nobody heard it
@@ -42,8 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
     return 1
 
 
-def _json(states: Mapping[str, DriverState]) -> str:
+def _json(states: Mapping[str, DriverState], stopped: bool) -> str:
     import json  # after the e-stop
 
     modes = {robot: state.mode for robot, state in sorted(states.items())}
-    return json.dumps({"stopped": all_stopped(states), "drivers": modes})
+    return json.dumps({"stopped": stopped, "drivers": modes})
