@@ -29,7 +29,7 @@ def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
         return current[0]
 
     with state_lines(text):
-        time.sleep(0.9)
+        wait_until(lambda: current[0] == "waiting 1.7 s", "the third state", 10)
     assert capsys.readouterr().out == "waiting 1.5 s\nrunning\n"
 
 
