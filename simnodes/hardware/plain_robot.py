@@ -60,7 +60,7 @@ class PlainRobot(Hardware):
         command = named(names.cmd_vel, TYPES[settings.command])
         self._command = session.plain_publisher(*address(settings.bus, command))
         self._ends = [(Kind.PUBLISHER, command)]
-        self._sources: list[tuple[Source, type[Message], str]] = []
+        self._sources: list[tuple[str, Source, type[Message], str]] = []  # by topic: keys of rmw_zenoh fill a line
         for name, kind, frame in (
             (names.odom, Odometry, settings.frames.odom),
             (names.pose, PoseEstimate, settings.frames.pose),
@@ -68,7 +68,7 @@ class PlainRobot(Hardware):
             if name:
                 topic = named(name, ros_type(kind))
                 source = session.plain_source(address(settings.bus, topic)[0])
-                self._sources.append((source, kind, frame))
+                self._sources.append((topic.name, source, kind, frame))
                 self._ends.append((Kind.SUBSCRIPTION, topic))
         self._other_ends = OtherEnds(command.name, names.odom.strip("/"), time.monotonic())
         self._graph = session.graph_view(settings.bus.domain_id) if settings.bus.profile == "rmw_zenoh" else None
@@ -105,31 +105,31 @@ class PlainRobot(Hardware):
 
     def _received(self) -> Iterator[Message]:
         """New messages, taken into account for the pose; a message repeated with the same stamp is none."""
-        for source, kind, frame in self._sources:
+        for name, source, kind, frame in self._sources:
             while (raw := source.receive()) is not None:
                 if isinstance(raw, Rejected) or not raw.is_put:
                     continue
                 message = decode(kind, raw.payload)
                 if isinstance(message, Rejected):
-                    raise ValueError(f"{raw.key}: {message.reason}")
+                    raise ValueError(f"{name}: {message.reason}")
                 found = frame_in(raw.payload)
                 if frame and found != frame:
-                    raise ValueError(f"{raw.key}: its frame is '{found}', expected '{frame}' (see [frames])")
-                if self._is_new(raw.key, message):
+                    raise ValueError(f"{name}: its frame is '{found}', expected '{frame}' (see [frames])")
+                if self._is_new(name, message):
                     yield message
 
-    def _is_new(self, key: str, message: Message) -> bool:
+    def _is_new(self, name: str, message: Message) -> bool:
         stamp_ns: int = getattr(message, "stamp_ns", 0)
-        if stamp_ns and self._stamps.get(key) == stamp_ns:
+        if stamp_ns and self._stamps.get(name) == stamp_ns:
             return False
-        self._stamps[key] = stamp_ns
+        self._stamps[name] = stamp_ns
         if isinstance(message, Odometry):
             if fault := self._tracker.move(message) or self._check.fault(message):
                 self._tracker.lose()
                 known_again = "the localiser speaks" if self._settings.topics.pose else "the driver is started again"
-                raise ValueError(f"{key}: {fault}; the pose is unknown until {known_again}")
+                raise ValueError(f"{name}: {fault}; the pose is unknown until {known_again}")
         elif isinstance(message, PoseEstimate) and (fault := self._tracker.correct(message)):
-            raise ValueError(f"{key}: {fault}")
+            raise ValueError(f"{name}: {fault}")
         return True
 
     def _pose(self, now_ns: int) -> dict[str, Message]:
