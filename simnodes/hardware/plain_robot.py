@@ -20,7 +20,7 @@ from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.typesystem import ros_type
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.localiser_check import Doubt
-from tailor.simnodes.hardware.odometry_check import OdometryCheck
+from tailor.simnodes.hardware.odometry_check import OdometryCheck, RepetitionCheck
 from tailor.simnodes.hardware.other_ends import OtherEnds
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_settings import PlainSettings
@@ -47,7 +47,8 @@ class PlainRobot(Hardware):
         doubt = Doubt(pose.max_std_m, pose.max_std_rad) if settings.topics.pose else Doubt()
         # One for all openings: after a fault the robot stands where odometry has carried it, not at its start.
         self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift, doubt)
-        self._check = OdometryCheck()
+        self._check, self._repetition = OdometryCheck(), RepetitionCheck()
+        self._command_sent = (0.0, 0.0)
         self._stamps: dict[str, int] = {}
         self._pose_due_ns = 0
 
@@ -56,7 +57,8 @@ class PlainRobot(Hardware):
         settings, names = self._settings, self._settings.topics
         self._stack = ExitStack()
         session = self._stack.enter_context(robots_session(settings.bus, self._endpoint))
-        self._stamps, self._pose_due_ns, self._check = {}, 0, OdometryCheck()
+        self._stamps, self._pose_due_ns, self._command_sent = {}, 0, (0.0, 0.0)
+        self._check, self._repetition = OdometryCheck(), RepetitionCheck()
         command = named(names.cmd_vel, TYPES[settings.command])
         self._command = session.plain_publisher(*address(settings.bus, command))
         self._ends = [(Kind.PUBLISHER, command)]
@@ -91,6 +93,7 @@ class PlainRobot(Hardware):
         stamped = self._settings.command == "twist_stamped"
         frame = self._settings.frames.cmd_vel
         self._command.publish_encoded(twist_bytes(values[0], values[1], (wall_ns(), frame) if stamped else None))
+        self._command_sent = values[0], values[1]
 
     def close(self) -> None:
         """Disconnect; the driver has published zero before."""
@@ -128,6 +131,8 @@ class PlainRobot(Hardware):
                 self._tracker.lose()
                 known_again = "the localiser speaks" if self._settings.topics.pose else "the driver is started again"
                 raise ValueError(f"{name}: {fault}; the pose is unknown until {known_again}")
+            if fault := self._repetition.fault(message, self._command_sent, time.monotonic()):
+                raise ValueError(f"{name}: {fault}")
         elif isinstance(message, PoseEstimate) and (fault := self._tracker.correct(message)):
             raise ValueError(f"{name}: {fault}")
         return True

@@ -1,5 +1,6 @@
 """A robot with plain topics as Hardware, in this process: what counts as a measurement, and what is a fault."""
 
+import itertools
 import socket
 import sys
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Odometry, PoseEstimate
 from tailor.schemas.typesystem import ros_type
-from tailor.simnodes.hardware import robots_bus
+from tailor.simnodes.hardware import odometry_check, robots_bus
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_robot import TYPES, PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus, TopicNames
@@ -89,6 +90,18 @@ def test_two_publishers_of_odometry_are_a_fault_and_one_is_none_afterwards():
         robot.open()
         later = replace(ODOMETRY, stamp_ns=4 * 10**9, x=1.3)
         assert wait_until(lambda: odometry.publish_encoded(codec.encode(later)) and robot.read()) == {"odom": later}
+
+
+@pytest.mark.promise("P63")
+@pytest.mark.parametrize(("v", "command"), [(99.0, (0.0, 0.0)), (0.0, (99.0, 0.0))], ids=["its speeds", "commands"])
+@pytest.mark.parametrize("stamps", [0, 1], ids=["no stamps", "new stamps"])
+def test_frozen_odometry_that_looks_fresh_is_a_fault_while_the_robot_moves(monkeypatch, v, command, stamps):
+    monkeypatch.setattr(odometry_check, "DEAD_S", 0.0)
+    with opened("rmw_zenoh") as (odometry, robot):
+        frozen = (replace(ODOMETRY, stamp_ns=n * stamps, v=v, omega=0.0) for n in itertools.count(1))
+        robot.write(command)
+        with pytest.raises(ValueError, match=r"^odom: repeats itself to the last digit"):
+            wait_until(lambda: odometry.publish_encoded(codec.encode(next(frozen))) and not robot.read())
 
 
 @pytest.mark.promise("P63")

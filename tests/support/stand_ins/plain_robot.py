@@ -18,7 +18,7 @@ import zenoh
 
 DEFAULTS = {
     "endpoint": "", "trace": "", "command": "twist", "cmd_vel": "cmd_vel", "odom": "odom", "pose": "amcl_pose",
-    "start": [0.0, 0.0, 0.0], "odom_frame": "odom", "odom_every": 1,
+    "start": [0.0, 0.0, 0.0], "odom_frame": "odom", "odom_every": 1, "odom_stamps": True,
 }  # fmt: skip
 PERIOD_S, TIMEOUT_S, DEAD_S = 0.02, 0.5, 0.04
 FASTER, SLOWER, TURN = 0.5, 0.65, 1.75  # m/s², m/s², rad/s²
@@ -39,8 +39,8 @@ class Writer:
         self.number("I", len(text) + 1)
         self.data += text.encode() + b"\0"
 
-    def header(self, frame):
-        seconds, rest = divmod(time.time_ns(), 10**9)
+    def header(self, frame, stamped=True):
+        seconds, rest = divmod(time.time_ns() * stamped, 10**9)
         self.number("i", seconds)
         self.number("I", rest)
         self.text(frame)
@@ -55,9 +55,9 @@ class Writer:
         return b"\0\1\0\0" + bytes(self.data)
 
 
-def odometry(pose, v, omega, frame):
+def odometry(pose, v, omega, frame, stamped):
     writer = Writer()
-    writer.header(frame)
+    writer.header(frame, stamped)
     writer.text("base_link")
     writer.pose(*pose)
     writer.number("d", v, 0.0, 0.0, 0.0, 0.0, omega, *([0.0] * 36))
@@ -118,7 +118,7 @@ def main(options):
             if (v, omega) != written:
                 written = (v, omega)
                 trace.write(f"{time.monotonic_ns()} {v!r} {omega!r} {wanted[0]!r}\n")
-            message = message if frozen else odometry(odom, v, omega, robot["odom_frame"])
+            message = message if frozen else odometry(odom, v, omega, robot["odom_frame"], robot["odom_stamps"])
             if step % robot["odom_every"] == 0:
                 session.put(robot["odom"], message)
             if not robot["pose"] or step % 10:

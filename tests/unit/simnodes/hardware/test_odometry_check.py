@@ -1,13 +1,14 @@
-"""Odometry of two publishers, or with false speeds, is told from that of one robot."""
+"""Odometry of two publishers, with false speeds, or frozen, is told from that of one robot, moving or at rest."""
 
 import math
 
 import pytest
 
 from tailor.schemas.messages import Odometry
-from tailor.simnodes.hardware.odometry_check import OdometryCheck
+from tailor.simnodes.hardware.odometry_check import OdometryCheck, RepetitionCheck
 
 PERIOD_S = 0.02
+FROZEN = "repeats itself to the last digit while the robot is to move: it is frozen, or the base does not obey"
 FAULT = "moves more than its own speeds say, expected one publisher, with true speeds"
 
 
@@ -58,3 +59,59 @@ def test_a_correction_of_half_a_metre_now_and_then_is_none():
 
 def test_odometry_without_stamps_is_not_judged():
     assert first_fault_s(circling(60.0, scale=0.0, stamped=False)) is None
+
+
+def first_repetition_s(odometry, command=(0.0, 0.0), period_s=PERIOD_S):
+    """When repetitions are found in a stream that a command goes with, and their text."""
+    check = RepetitionCheck()
+    times = (
+        (k * period_s, text) for k, each in enumerate(odometry) if (text := check.fault(each, command, k * period_s))
+    )
+    return next(times, None)
+
+
+@pytest.mark.promise("P63")
+@pytest.mark.parametrize("period_s", [0.02, 0.25])
+@pytest.mark.parametrize(
+    ("speeds", "command", "limit_s"),
+    [
+        ((0.4, 0.0), (0.0, 0.0), 0.8),
+        ((0.0, -1.0), (0.0, 0.0), 0.6),
+        ((0.0, 0.0), (-0.4, 0.0), 1.8),
+        ((0.0, 0.0), (0.0, 1.0), 1.6),
+        ((0.1, 0.0), (0.4, 0.0), 1.8),
+    ],
+)
+def test_frozen_odometry_is_found_before_the_robot_has_gone_far(speeds, command, limit_s, period_s):
+    """Without stamps it was fresh for ever, and drove a robot through a wall."""
+    frozen = [Odometry(0, 1.0, 2.0, 0.5, *speeds)] * 1000
+    at_s, text = first_repetition_s(frozen, command, period_s)
+    assert (at_s <= limit_s + period_s, text) == (True, FROZEN)
+
+
+def test_a_robot_at_rest_repeats_itself_for_hours():
+    rest = [Odometry(0, 1.0, 2.0, 0.5, 0.0, 0.0)] * 100_000
+    assert first_repetition_s(rest) is None
+    assert first_repetition_s(rest, (0.05, -0.1)) is None, "too little for its motors"
+    creeping = [Odometry(0, 1.0, 2.0, 0.5, 0.02, 0.05)] * 100_000
+    assert first_repetition_s(creeping) is None, "the offset of a gyroscope"
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.0], ids=["its speeds", "no speeds"])
+@pytest.mark.parametrize("stamped", [True, False])
+def test_a_robot_that_moves_does_not_repeat_itself(scale, stamped):
+    assert first_repetition_s(circling(60.0, scale=scale, stamped=stamped), (0.9, 1.75)) is None
+
+
+def test_a_base_may_take_a_second_to_begin_to_move_each_time():
+    check, at_rest = RepetitionCheck(), Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    for start in range(20):
+        for k in range(100):
+            command = (0.9, 1.75) if k < 60 else (0.0, 0.0)  # it is to stop again soon after
+            assert not check.fault(at_rest, command, 2.0 * start + PERIOD_S * k)
+
+
+def test_a_pause_of_the_driver_is_no_motion():
+    check, frozen = RepetitionCheck(), Odometry(0, 1.0, 2.0, 0.5, 0.5, 0.0)
+    assert not check.fault(frozen, (0.5, 0.0), 0.0)
+    assert not check.fault(frozen, (0.5, 0.0), 60.0)
