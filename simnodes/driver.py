@@ -34,6 +34,7 @@ class Driver:
       guard: The guard; its `output(now_ns)` gives the set-points for the motors, see also `set_points`.
       held: The dead man's switches; when one falls silent, the driver stops and latches.
       unready: Why the hardware cannot be driven now, so that arming is refused; empty: it can.
+      notice: What people should know although it can; empty: nothing.
     """
 
     def __init__(self, spec: DriverSpec, epoch: int, leave: str = "") -> None:
@@ -46,7 +47,7 @@ class Driver:
         """
         self.guard = Guard(spec.limits, epoch, spec.timeout_ns, leave)
         self.held = HeldSwitches()
-        self.unready = ""
+        self.unready = self.notice = ""
         self._arm_refused: Counter[ArmRefusal] = Counter()
         self._outlets = tuple((_suffix(TOPIC_TABLE[o.topic].key), o.axes) for o in spec.all_outlets())
         self._numbers = {suffix: number for number, (suffix, _) in enumerate(self._outlets)}
@@ -135,7 +136,7 @@ class Driver:
 
     def _detail(self) -> str:
         held = ", ".join(shown(sender) for sender in self.held.senders)
-        parts = self.guard.detail, self._why_unready(), f"{HELD_BY}{held}" if held else ""
+        parts = self.guard.detail, self._why_unready(), self.notice, f"{HELD_BY}{held}" if held else ""
         return "; ".join(text for text in parts if text)
 
     def _why_unready(self) -> str:

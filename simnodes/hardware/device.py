@@ -42,11 +42,12 @@ class Device:
     Attributes:
       phase: What it is doing.
       fault: Newest fault, one line; empty before the first and since the hardware runs again.
+      notice: The hardware's notice at its newest `read`, one line.
     """
 
     def __init__(self, hardware: Hardware, limits: Sequence[Limit], retry: RetryPolicy, clock: Clock) -> None:
         """Nothing is called before `start`; the limits name the axes that keep their set-points at standstill."""
-        self.phase, self.fault = Phase.OPENING, ""
+        self.phase, self.fault, self.notice = Phase.OPENING, "", ""
         self._hardware, self._retry, self._clock = hardware, retry, clock
         limits_s = {"open": hardware.open_s, "read": hardware.read_s, "write": hardware.write_s, "close": CLOSE_S}
         self._calls = Calls(clock, limits_s)
@@ -137,7 +138,8 @@ class Device:
         self._close()
 
     def _work(self) -> None:
-        self.fault, self._values = "", self._standstill()  # nothing from before the fault, should the loop hang
+        self.fault = self.notice = ""
+        self._values = self._standstill()  # nothing from before the fault, should the loop hang
         self._handed_ns = self._clock.now_ns()
         self._kept, self._awaits_kept = None, self._follows and self._at_rest  # to stop the robot comes first
         self._readings.clear()
@@ -162,6 +164,7 @@ class Device:
     def _read(self) -> None:
         def take() -> None:
             measured = self._hardware.read()
+            self.notice = fault_text(self._hardware.notice)
             if measured and not isinstance(measured, Mapping):
                 raise TypeError(f"returned {type(measured).__name__}, expected messages by topic")
             if measured:

@@ -21,6 +21,8 @@ class Hardware:
     Attributes:
       robot: Name of the robot; its package declares command, axes, limits and sensors in `driver.toml`.
       open_s, read_s, write_s: Time limits of the methods.
+      notice: What people should know although the robot can be driven, e.g. that a localiser is silent; it is printed,
+        and stands in the detail of the driver's state. Looked at after each `read`.
       write_hz: Rate at which `write` is called; a new set-point is written at the next period of 10 ms.
     """
 
@@ -29,6 +31,7 @@ class Hardware:
     read_s: float = 0.5
     write_s: float = 0.2
     write_hz: float = 50.0
+    notice: str = ""
 
     def open(self) -> None:
         """Connect to the device, at start-up and after each fault. The robot must not move."""

@@ -158,6 +158,10 @@ class HardwareNode:
             missing = self._watch.missing()
             unready = f"no {missing} yet" if missing else ""
         self._note(unready, bool(device.fault))
+        if device.notice != self.driver.notice:
+            self.driver.notice = device.notice
+            if device.notice:
+                self._report(device.notice)
 
     def _note(self, unready: str, is_fault: bool) -> None:
         if unready == self._unready:

@@ -10,11 +10,16 @@ FIRST_S = 2.0  # from opening to the first odometry; the driver would give no na
 
 
 class OtherEnds:
-    """Follows the subscribers of the command and the first odometry since the topics were opened."""
+    """Follows the subscribers of the command, and the first odometry and pose since the topics were opened."""
 
-    def __init__(self, command: str, odometry: str, now_s: float) -> None:
-        """`command`, `odometry`: names of the topics, for people; `now_s`: monotonic time of their opening."""
-        self._command, self._odometry = command, odometry
+    def __init__(self, command: str, odometry: str, pose: str, now_s: float) -> None:
+        """Nobody was heard yet.
+
+        Args:
+          command, odometry, pose: Names of the topics, for people; an empty pose: there is no localiser.
+          now_s: Monotonic time of their opening.
+        """
+        self._command, self._odometry, self._pose = command, odometry, pose
         self._opened_s = self._obeyed_s = now_s
         self._obeyed = self._measured = False
 
@@ -43,3 +48,16 @@ class OtherEnds:
         self._measured = self._measured or measured
         if not self._measured and now_s - self._opened_s > FIRST_S:
             raise ValueError(f"{self._odometry}: nothing comes from there, expected odometry (topics.odom)")
+
+    def unlocated(self, located: bool, may_speak: bool, now_s: float) -> str:
+        """Text if no localiser has been heard for a while. That is no fault: many publish only while the robot moves.
+
+        Args:
+          located: Whether a pose has ever come.
+          may_speak: False if nobody publishes there for certain.
+          now_s: Monotonic time.
+        """
+        if not self._pose or located or now_s - self._opened_s <= FIRST_S:
+            return ""
+        why = "nothing has come from there yet" if may_speak else "nobody publishes there"
+        return f"{self._pose}: {why}, expected the localiser (topics.pose)"

@@ -48,7 +48,7 @@ class PlainRobot(Hardware):
         # One for all openings: after a fault the robot stands where odometry has carried it, not at its start.
         self._tracker = PoseTracker((start[0], start[1], start[2]) if start else None, drift, doubt)
         self._check, self._repetition = OdometryCheck(), RepetitionCheck()
-        self._command_sent = (0.0, 0.0)
+        self._command_sent, self._located = (0.0, 0.0), False
         self._stamps: dict[str, int] = {}
         self._pose_due_ns = 0
 
@@ -72,12 +72,12 @@ class PlainRobot(Hardware):
                 source = session.plain_source(address(settings.bus, topic)[0])
                 self._sources.append((topic.name, source, kind, frame))
                 self._ends.append((Kind.SUBSCRIPTION, topic))
-        self._other_ends = OtherEnds(command.name, names.odom.strip("/"), time.monotonic())
+        self._other_ends = OtherEnds(command.name, names.odom.strip("/"), names.pose.strip("/"), time.monotonic())
         self._graph = session.graph_view(settings.bus.domain_id) if settings.bus.profile == "rmw_zenoh" else None
 
     def read(self) -> dict[str, Message]:
         """The newest odometry, and at its rate the pose that follows from it; nothing before a base takes commands."""
-        self._check_types()
+        self._check_ends()
         until_s = time.monotonic() + WAIT_S
         while (now_s := time.monotonic()) < until_s:
             obeyed = self._other_ends.obeys(self._command.matched(), now_s)
@@ -99,9 +99,16 @@ class PlainRobot(Hardware):
         """Disconnect; the driver has published zero before."""
         self._stack.close()
 
-    def _check_types(self) -> None:
-        """Raise ValueError if the robot's nodes have other types on our topics: ROS 2 reports it to nobody."""
-        for found in mismatches(self._ends, self._graph.announced()) if self._graph else ():
+    def _check_ends(self) -> None:
+        """Raise ValueError if the robot's nodes have other types on our topics, and note a localiser that nobody hears.
+
+        ROS 2 reports neither to anybody.
+        """
+        announced = self._graph.announced() if self._graph else ()
+        published = {each.what.name for each in announced if each.kind is Kind.PUBLISHER and each.what}
+        may_speak = not self._graph or self._settings.topics.pose.strip("/") in published
+        self.notice = self._other_ends.unlocated(self._located, may_speak, time.monotonic())
+        for found in mismatches(self._ends, announced):
             settings = [name for name, kind in TYPES.items() if kind == found.theirs.type]
             is_command = found.kind is Kind.PUBLISHER
             raise ValueError(f"{found}; set command = '{settings[0]}'" if is_command and settings else str(found))
@@ -133,8 +140,10 @@ class PlainRobot(Hardware):
                 raise ValueError(f"{name}: {fault}; the pose is unknown until {known_again}")
             if fault := self._repetition.fault(message, self._command_sent, time.monotonic()):
                 raise ValueError(f"{name}: {fault}")
-        elif isinstance(message, PoseEstimate) and (fault := self._tracker.correct(message)):
-            raise ValueError(f"{name}: {fault}")
+        elif isinstance(message, PoseEstimate):
+            self._located = True
+            if fault := self._tracker.correct(message):
+                raise ValueError(f"{name}: {fault}")
         return True
 
     def _pose(self, now_ns: int) -> dict[str, Message]:

@@ -15,7 +15,7 @@ from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Odometry, PoseEstimate
 from tailor.schemas.typesystem import ros_type
-from tailor.simnodes.hardware import odometry_check, robots_bus
+from tailor.simnodes.hardware import odometry_check, other_ends, robots_bus
 from tailor.simnodes.hardware.plain_keys import address, named
 from tailor.simnodes.hardware.plain_robot import TYPES, PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, PoseSettings, RobotBus, TopicNames
@@ -132,6 +132,24 @@ def test_a_base_that_takes_no_commands_gives_no_measurement_but_a_fault():
                 wait_until(lambda: odometry.publish_encoded(codec.encode(ODOMETRY)) and misspelt.read())
         finally:
             misspelt.close()
+
+
+@pytest.mark.parametrize(
+    ("profile", "why"), [("plain", "nothing has come from there yet"), ("rmw_zenoh", "nobody publishes there")]
+)
+def test_a_localiser_that_nobody_hears_is_named_until_it_speaks(monkeypatch, profile, why):
+    """The executive alone reported `input stale: pose`, of a topic of Tailor's."""
+    with opened(profile) as (odometry, robot), open_client(robot._endpoint) as base:
+        wait_until(lambda: odometry.publish_encoded(codec.encode(ODOMETRY)) and robot.read())
+        monkeypatch.setattr(other_ends, "FIRST_S", 0.0)
+        robot.read()
+        assert robot.notice == f"amcl_pose: {why}, expected the localiser (topics.pose)"
+        localiser = base.plain_publisher(*address(robot._settings.bus, named("amcl_pose", ros_type(PoseEstimate))))
+        wait_until(localiser.matched)
+        wait_until(lambda: "nothing has come" in (robot.read(), robot.notice)[1])
+        pose = codec.encode(PoseEstimate(10**9, 0.0, 0.0, 0.0, 0.01, 0.01, 0.01))
+        localiser.publish_encoded(pose)
+        wait_until(lambda: (robot.read(), not robot.notice)[1])
 
 
 @pytest.mark.parametrize("listens", [False, True], ids=["nobody", "another program"])

@@ -107,6 +107,19 @@ def test_commands_reach_the_hardware_and_measurements_the_bus(robot):
     assert driven.state().reason == "the driver ends"
 
 
+def test_a_notice_of_the_hardware_is_reported_and_stands_in_the_state_of_a_driver_that_can_be_armed(robot):
+    hardware = Faulty()
+    hardware.notice = "the lidar is\ndirty" + 1000 * "!"
+    driven = robot(hardware)
+    driven.drive()
+    state = wait_until(lambda: driven.is_in("armed")() and driven.state(), "armed", 5)
+    assert state.detail.startswith("the lidar is dirty!!!")
+    assert isinstance(decode(DriverState, encode(state)), DriverState), "others can read it"
+    assert [line[:18] for line in driven.reports if line.startswith("the")] == ["the lidar is dirty"]
+    hardware.notice = ""
+    wait_until(lambda: driven.state().detail == "", "no notice", 5)
+
+
 def test_hardware_that_does_not_open_is_tried_again_and_cannot_be_armed(robot):
     hardware = Faulty()
     hardware.raises = {"open"}
