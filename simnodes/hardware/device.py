@@ -51,6 +51,7 @@ class Device:
         self._hardware, self._retry, self._clock = hardware, retry, clock
         limits_s = {"open": hardware.open_s, "read": hardware.read_s, "write": hardware.write_s, "close": CLOSE_S}
         self._calls = Calls(clock, limits_s)
+        self._measured: dict[str, Message] = {}  # newest of each topic
         self._readings: deque[tuple[int, Mapping[str, Message]]] = deque(maxlen=MAX_READINGS)
         self._keeps = tuple(limit.kept is not None for limit in limits)
         self._values, self._handed_ns = tuple(limit.kept or 0.0 for limit in limits), clock.now_ns()
@@ -167,13 +168,19 @@ class Device:
             self.notice = fault_text(self._hardware.notice)
             if measured and not isinstance(measured, Mapping):
                 raise TypeError(f"returned {type(measured).__name__}, expected messages by topic")
-            if measured:
+            if new := self._new(measured or {}):
                 self._follow()
-                self._readings.append((self._clock.now_ns(), measured))
+                self._readings.append((self._clock.now_ns(), new))
             else:
                 self._ended.wait(IDLE_S)
 
         self._repeat("read", take)
+
+    def _new(self, measured: Mapping[str, Message]) -> dict[str, Message]:
+        """The measurements that were not read before, in a mapping that no later read fills again."""
+        new = {name: each for name, each in measured.items() if not _repeats(each, self._measured.get(name))}
+        self._measured |= new
+        return new
 
     def _follow(self) -> None:
         kept = self._hardware.kept()
@@ -207,3 +214,8 @@ class Device:
                 self.fail(fault)
             elif pause_s:
                 self._broken.wait(pause_s)
+
+
+def _repeats(message: Message, before: Message | None) -> bool:
+    """Whether a message is the one of before, e.g. since a class returns what its device's thread has left there."""
+    return message is before or (bool(getattr(message, "stamp_ns", 0)) and message == before)

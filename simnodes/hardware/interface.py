@@ -41,7 +41,8 @@ class Hardware:
 
         Returns:
           New measurements by topic, e.g. `{"odom": Odometry(...)}`; empty if there are none. A stamp of 0 becomes the
-          time at which `read` returned. Never return an old measurement again: it would look fresh.
+          time at which `read` returned. Never make a new message of an old measurement: it would look fresh. The very
+          object of before, or an equal one with its stamp, counts as none.
         """
         raise NotImplementedError
 

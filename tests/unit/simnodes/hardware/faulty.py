@@ -2,6 +2,7 @@
 
 import threading
 from collections import Counter
+from dataclasses import replace
 
 from tailor.schemas.codec import decode
 from tailor.schemas.messages import Odometry
@@ -10,6 +11,7 @@ from tailor.simnodes.hardware.interface import Hardware
 
 PATIENT_S = 30.0  # of a call: no stall of the machine is taken for one of the hardware
 STALLED_S = 0.5
+AT_REST = Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Faulty(Hardware):
@@ -41,7 +43,13 @@ class Faulty(Hardware):
     def read(self):
         threading.Event().wait(0.01)
         self._called("read")
-        return {} if self.silent else self.odometry or {"odom": Odometry(0, 0.0, 0.0, 0.0, 0.0, 0.0)}
+        return {} if self.silent else self._measured()
+
+    def _measured(self):
+        """A new message each time."""
+        if isinstance(self.odometry, list):
+            return self.odometry
+        return {name: replace(each) for name, each in (self.odometry or {"odom": AT_REST}).items()}
 
     def write(self, values):
         self.written.append(values)

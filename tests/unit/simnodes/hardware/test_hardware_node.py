@@ -225,6 +225,34 @@ def test_a_silent_sensor_stops_the_robot(robot):
     stopped_for(driven, "odom: silent for 0.5 s")
 
 
+@pytest.mark.parametrize("stamp_ns", [0, 1])
+def test_a_sensor_that_repeats_its_last_message_is_silent(robot, stamp_ns):
+    """A class returned what its device's thread had left there: 8700 times a second, fresh for ever."""
+    driven = robot()
+    driven.drive()
+    last = Odometry(stamp_ns, 0.5, 0.0, 0.0, 0.3, 0.0)
+    driven.hardware.read = lambda: {"odom": replace(last) if stamp_ns else last}
+    stopped_for(driven, "odom: silent for 0.5 s")
+    assert [each for each in driven.bus.published["odom"] if each.x == 0.5] == driven.bus.published["odom"][-1:]
+
+
+def test_a_class_may_return_the_mapping_of_before_filled_again(robot):
+    hardware, filled = Faulty(), {}
+
+    def read():
+        threading.Event().wait(0.001)
+        filled["odom"] = Odometry(0, float(len(taken)), 0.0, 0.0, 0.0, 0.0)
+        taken.append(filled["odom"].x)
+        return filled
+
+    taken, hardware.read = [], read
+    driven = robot(hardware)
+    published = wait_until(
+        lambda: driven.bus.published["odom"][50:] and driven.bus.published["odom"][:50], "odometry", 5
+    )
+    assert [each.x for each in published] == [float(n) for n in range(50)]
+
+
 def test_a_read_that_stalls_is_named_rather_than_the_sensor_that_it_leaves_silent(robot, monkeypatch):
     """Also where a busy machine lets it begin late, so that the sensor is silent for longer."""
     driven = robot(Faulty(impatient={"read"}))
