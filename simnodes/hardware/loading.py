@@ -32,24 +32,24 @@ def load_hardware(named: str) -> Hardware:
         raise UsageError(f"{named}: expected FILE.toml, package.module:Class or FILE.py:Class")
     try:
         found = getattr(_module(where), name)
-    except Exception as error:  # whatever a person's module does when it is loaded
+    except (Exception, SystemExit) as error:  # whatever a person's module does when it is loaded
         raise UsageError(f"{named}: {_cause(error)}, expected package.module:Class or FILE.py:Class") from error
     if not (inspect.isclass(found) and issubclass(found, Hardware)):
         raise UsageError(f"{named}: is no subclass of tailor.simnodes.hardware.interface.Hardware")
     try:
         hardware = found()
-    except Exception as error:
+        robot, numbers = hardware.robot, {name: getattr(hardware, name) for name in NUMBERS}
+    except (Exception, SystemExit) as error:
         raise UsageError(f"{named}: {_cause(error)}, expected a class that is made without arguments") from error
-    if not hardware.robot:
+    if not robot:
         raise UsageError(f"{named}: robot is empty, expected the name of the robot")
-    for name in NUMBERS:
-        value = getattr(hardware, name)
+    for name, value in numbers.items():
         if not (isinstance(value, int | float) and LEAST <= value <= MOST):
             raise UsageError(f"{named}: {name} is {shown(value)}, expected a number from {LEAST:g} to {MOST:g}")
     return hardware
 
 
-def _cause(error: Exception) -> str:
+def _cause(error: BaseException) -> str:
     """One line; where an error is from, if it names no cause by itself, such as `division by zero`."""
     text = " ".join(str(error).split())
     if text and isinstance(error, ImportError | AttributeError | OSError | SyntaxError | ValueError):

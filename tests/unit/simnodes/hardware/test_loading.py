@@ -23,12 +23,15 @@ WRONG = {
     f"{__name__}:HardlyWriting": r"write_hz is 1e-310, expected a number from 0\.001 to 1e\+06",
     f"{__name__}:Patient": r"read_s is 10+\.\.\., expected a number from 0\.001 to 1e\+06",
     f"{__name__}:Unplugged": r"RuntimeError: no board, on no port \(test_loading\.py, line \d+\), expected a class",
+    f"{__name__}:Leaving": r"SystemExit: 0 \(test_loading\.py, line \d+\), expected a class",
+    f"{__name__}:Unnamed": r"ZeroDivisionError: division by zero \(test_loading\.py, line \d+\), expected a class",
     ".relative:Rover": "expected package.module:Class or FILE.py:Class",
 }
 BROKEN = {
     "raise KeyError": "KeyError",
     "Rover = 1 / 0": r"ZeroDivisionError: division by zero \(broken\.py, line 1\)",
     "def": "invalid syntax",
+    "raise SystemExit(0)": r"SystemExit: 0 \(broken\.py, line 1\)",
 }
 
 
@@ -63,6 +66,21 @@ class Unplugged(Faulty):
 
     def __init__(self):
         raise RuntimeError("no board,\non no port")
+
+
+class Leaving(Faulty):
+    """It ended the driver with exit code 0 and without a word."""
+
+    def __init__(self):
+        sys.exit(0)
+
+
+class Unnamed(Faulty):
+    """Its name is found out later, which fails."""
+
+    @property
+    def robot(self):
+        return 1 / 0
 
 
 def test_a_class_is_found_in_a_file_and_in_a_module():
