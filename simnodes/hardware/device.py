@@ -41,7 +41,7 @@ class Device:
 
     Attributes:
       phase: What it is doing.
-      fault: Newest fault, one line; empty before the first and since the hardware runs again.
+      fault: First fault since the newest opening that had any, one line; empty since the hardware runs again.
       notice: The hardware's notice at its newest `read`, one line.
     """
 
@@ -60,7 +60,7 @@ class Device:
         self._awaits_kept = self._follows  # the present set-points would move such an axis, e.g. close an open gripper
         self._at_rest = True  # nothing was written, or standstill last
         self._ended, self._broken = threading.Event(), threading.Event()
-        self._faults, self._opened_ns, self._closed = 0, 0, False
+        self._faults, self._opened_ns, self._closed, self._failed = 0, 0, False, False
         self._main = threading.Thread(target=self._live, name="hardware", daemon=True)
 
     def start(self) -> None:
@@ -100,8 +100,8 @@ class Device:
 
     def fail(self, fault: str) -> None:
         """A watchdog of the loop found a fault."""
-        if not self.fault:
-            self.fault = fault_text(fault)
+        if not self._failed:  # what follows from a fault is none of its own
+            self._failed, self.fault = True, fault_text(fault)
         self._broken.set()
 
     def stalled(self, now_ns: int) -> str:
@@ -125,7 +125,7 @@ class Device:
 
     def _run_once(self) -> None:
         """Open, work until a fault, close."""
-        self.phase, self._closed = Phase.OPENING, False
+        self.phase, self._closed, self._failed = Phase.OPENING, False, False
         self._broken.clear()
         if self._ended.is_set():  # since a moment ago: its own `set` may have been cleared
             return

@@ -66,6 +66,7 @@ class HardwareNode:
         self._watch = SensorWatch(watched_sensors(names))
         self._opened = False  # the watch has been restarted since the hardware runs
         self._unready: str | None = None  # nothing is reported yet
+        self._faulty = False  # since the fault that is reported
         self.driver.unready = Phase.OPENING.value
 
     def run(self, stopped: Callable[[], bool], notifier: Notifier = SILENT) -> bool:
@@ -167,8 +168,9 @@ class HardwareNode:
         if unready == self._unready:
             return
         self._unready = self.driver.unready = unready
-        if is_fault:
+        if is_fault and not self._faulty:  # one that keeps it from being opened again is none that stopped the robot
             self.driver.guard.stop(unready)
+        self._faulty = is_fault
         self._report(f"not ready: {unready}" if unready else "ready")
 
     def _hand(self, now_ns: int) -> None:

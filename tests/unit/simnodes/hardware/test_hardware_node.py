@@ -155,6 +155,20 @@ def test_a_fault_stops_the_robot_until_a_person_arms_it_again(robot, kind, metho
     driven.drive()
 
 
+@pytest.mark.parametrize("kind", ["raises", "stalls"])
+def test_hardware_that_cannot_be_opened_again_says_why(robot, kind):
+    """A plug that was pulled stayed `odom: silent` while its port was missing."""
+    driven = robot(Faulty(impatient={"open"}))
+    driven.drive()
+    setattr(driven.hardware, kind, {"open"})
+    driven.hardware.raises = {*driven.hardware.raises, "read"}
+    stopped_for(driven, "read: OSError: no read")
+    wait_until(lambda: driven.state().detail.startswith("read: OSError: no read; not ready: open: "), "both reasons", 5)
+    driven.hardware.released.set()
+    driven.hardware.raises, driven.hardware.stalls = set(), set()
+    driven.drive()
+
+
 @pytest.mark.parametrize("error", [SystemExit, asyncio.CancelledError])
 def test_no_exception_ends_the_writing_unseen(robot, error):
     driven = robot()
