@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 import secrets
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,17 +14,24 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import at_rest, messages_of
 from tailor.runtime.bus.attachment import Origin
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, Message
+from tailor.simnodes.driver import SHOWN_DIGITS, shown
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
+from tailor.simnodes.reasons import Reason
 
 PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors
 PATIENCE_S = 6.0  # for the robot to come to rest
+SENDER = re.compile(rf"\b[0-9a-f]{{{SHOWN_DIGITS}}}\b")  # of a switch, in the detail of a driver's state
 FRESH_S = 1.0  # ten periods of the driver's state: an older one is that of a driver which has ended
 
 
 class NotPossible(Exception):
     """A clause cannot be tried since something that it needs does not work; another clause reports that."""
+
+
+class EStopPressed(Exception):
+    """Somebody else stopped all drivers: the bench, which resets the e-stops that it sends, must not reset this one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,10 +89,29 @@ class Bench:
         self.sent = 0
         self.sender, self.other = secrets.token_hex(16), secrets.token_hex(16)
         self._numbers: Counter[str] = Counter()
+        self._before: set[str] | None = None  # dead man's switches that were let go before
 
     def wait(self, seconds: float) -> None:
-        """Listen."""
-        self.log += self.link.wait(seconds)
+        """Listen.
+
+        Raises:
+          EStopPressed: An e-stop of somebody else was heard, or has shown in the driver's state.
+        """
+        heard = self.link.wait(seconds)
+        self.log += heard
+        if any(map(self._is_of_people, heard)):
+            raise EStopPressed("somebody pressed the e-stop, or let go of a dead man's switch")
+
+    def _is_of_people(self, heard: Heard) -> bool:
+        message = heard.message
+        if isinstance(message, EStop):
+            return message.stop and heard.sender != self.other
+        if not isinstance(message, DriverState):
+            return False
+        is_released = message.reason == Reason.HOLD_RELEASED
+        switches = set(SENDER.findall(message.detail.partition(";")[0])) if is_released else set[str]()
+        self._before = switches if self._before is None else self._before & switches
+        return bool(switches - self._before - {shown(self.other)})
 
     def heard(self, topic: str, since_s: float = 0.0) -> list[Heard]:
         """What was heard of a topic since a time."""

@@ -39,7 +39,7 @@ class LiveLink:
           NoDriverError: There is none within MATCH_S, or under rmw_zenoh one of other types.
         """
         graph = executive.graph_view(executive.keys.domain) if executive.keys.announces else None
-        names = ("driver", *sensors)
+        names = ("driver", "estop", *sensors)
         self._sources = [(name, source) for name in names for source in executive.raw_sources(name, robot)]
         self._publishers = {name: executive.publisher(name, robot) for name in commands}
         self._publishers |= {name: people.publisher(name, robot) for name in PEOPLE}

@@ -55,8 +55,11 @@ class SimulatedLink:
         received = self.received(topic, message)
         if isinstance(received, Rejected):
             self.rejected[key, received.reason] += 1
-        else:
-            self._waiting.append(Sample(key, received, self._now_ns, origin.sequence, origin.sender))
+            return
+        self._waiting.append(Sample(key, received, self._now_ns, origin.sequence, origin.sender))
+        if topic == "estop":  # as on a bus, where a bench hears those of everybody
+            now_s = self.now_s()
+            self._heard.append(Heard(now_s, now_s, topic, received, "", origin.sender, origin.sequence))
 
     def stalled_s(self) -> float:
         """Simulated time stands still while the process does."""

@@ -18,9 +18,10 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.messages import DriverState
 from tailor.tools.cli.output_files import check_output, check_writable, whole_output
+from tailor.tools.cli.plain_text import note
 from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
 from tailor.tools.conformance import report as reports
-from tailor.tools.conformance.bench import Bench, NotPossible
+from tailor.tools.conformance.bench import Bench, EStopPressed, NotPossible
 from tailor.tools.conformance.clause import Verdict
 from tailor.tools.conformance.fit import Response, differences, responses
 from tailor.tools.conformance.live_link import LiveLink, NoDriverError
@@ -68,10 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
         simulated = _is_simulator(people, arguments.robot)
         if not simulated:
             _confirm(arguments.robot, arguments.yes)
-        try:
-            report = _checked(bench, arguments, named, "simulator" if simulated else "hardware")
-        finally:
-            bench.request(arm=False)
+        report = _watched(bench, arguments, named, "simulator" if simulated else "hardware")
+    if report is None:
+        return 1
     if arguments.json:
         print(json.dumps(reports.values(report)))
     if arguments.report is not None:
@@ -95,6 +95,19 @@ def _checked_flags(arguments: argparse.Namespace) -> list[str]:
     if arguments.no_fit and arguments.top_speed:
         raise UsageError("--top-speed: of the comparison that --no-fit leaves out, expected one of both")
     return named
+
+
+def _watched(bench: Bench, arguments: argparse.Namespace, named: list[str], kind: str) -> Report | None:
+    """As `_checked`, with the driver disarmed at the end; None if somebody pressed the e-stop, which stays latched."""
+    try:
+        return _checked(bench, arguments, named, kind)
+    except EStopPressed as error:
+        bench.estop()  # a reset of our own may have come after theirs
+        advice = f"it stays latched; `tailor arm {arguments.robot} --reset` releases it"
+        note(f"tailor check-driver: {error}: the check ends, and {advice}", to_stderr=True)
+        return None
+    finally:
+        bench.request(arm=False)
 
 
 def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind: str) -> Report:
@@ -149,7 +162,7 @@ def _confirm(robot: str, agreed: bool) -> None:
         raise UsageError(f"{robot} is hardware that will move, expected --yes or a terminal to confirm")
     print(
         f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped three "
-        "times."
+        "times. An e-stop that is latched now is released; one that is pressed later ends the check."
     )
     try:
         typed = input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ")
@@ -164,12 +177,12 @@ def _check_free(bench: Bench, robot: str) -> None:
 
     A forgotten simulator beside hardware would pass for the only driver, and the hardware would move unasked.
     """
-    bench.wait(LISTEN_S)
+    try:
+        bench.wait(LISTEN_S)
+        state = bench.state()
+    except (NotPossible, EStopPressed) as error:
+        raise UsageError(f"{robot}: {error}") from error
     if len({each.message.epoch for each in bench.heard("driver") if isinstance(each.message, DriverState)}) > 1:
         raise UsageError(f"several drivers of {robot} are on the bus, or one has just started anew; expected one")
-    try:
-        state = bench.state()
-    except NotPossible as error:
-        raise UsageError(f"{robot}: {error}") from error
     if state.mode == "armed":
         raise UsageError(f"{robot} is armed for {state.armed_sender}, expected a driver that nobody uses")
