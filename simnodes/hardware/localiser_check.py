@@ -1,4 +1,4 @@
-"""When nobody knows where the robot is: the localiser says so, is silent for too long, or contradicts itself. Pure.
+"""When nobody knows where the robot is: the localiser says so, is silent, is frozen, or contradicts itself. Pure.
 
 Poses that jump back and forth are those of two localisers on one topic, or of one that is lost and does not say so. One
 jump is none: a localiser that finds the robot elsewhere corrects itself once.
@@ -16,6 +16,7 @@ MOST = 0.5  # m or rad that one correction counts
 LEAK_PER_S = 0.5  # m or rad
 EXCESS = 1.0  # m or rad, thus at least three corrections
 MAX_STEP_S = 1.0
+UNSEEN_M, UNSEEN_RAD = 0.5, 1.0  # by which odometry may come away, e.g. since a gyroscope drifts while the robot stands
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,3 +67,34 @@ class LocaliserCheck:
             return ""
         self._excess = [0.0, 0.0]
         return "jumps back and forth, expected one localiser"
+
+
+class FrozenCheck:
+    """Where odometry was when the localiser's pose last changed.
+
+    One that is frozen, but stamps its poses anew or not at all, would hold the pose in its place while the robot moves.
+    """
+
+    def __init__(self) -> None:
+        """Nothing was received yet."""
+        self._seen: tuple[float, ...] = ()
+        self._there = (0.0, 0.0, 0.0)
+
+    def fault(self, seen: PoseEstimate, odometry: tuple[float, float, float]) -> str:
+        """Take a pose into account.
+
+        Args:
+          seen: Pose of the localiser; its stamp does not count.
+          odometry: That of its time: x, y (m), phi (rad).
+
+        Returns:
+          Text if it repeats itself although the robot has moved.
+        """
+        pose = (seen.x, seen.y, seen.phi)
+        if pose != self._seen:
+            self._seen, self._there = pose, odometry
+        away_m = math.dist(self._there[:2], odometry[:2])
+        away_rad = abs(math.remainder(odometry[2] - self._there[2], math.tau))
+        if away_m <= UNSEEN_M and away_rad <= UNSEEN_RAD:
+            return ""
+        return "repeats itself to the last digit while odometry moves: the localiser is frozen"

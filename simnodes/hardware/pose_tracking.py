@@ -11,7 +11,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from tailor.schemas.messages import Odometry, PoseEstimate
-from tailor.simnodes.hardware.localiser_check import Doubt, LocaliserCheck
+from tailor.simnodes.hardware.localiser_check import Doubt, FrozenCheck, LocaliserCheck
 
 JUMP_M, JUMP_MPS = 0.5, 10.0  # a longer step of the odometry than both together is none that a robot has made
 JUMP_RAD, JUMP_RADPS = 0.5, 10.0  # nor is a larger turn
@@ -61,7 +61,7 @@ class PoseTracker:
           doubt: Limits of the standard deviations, beyond which the pose is unknown; None: there are none.
         """
         self.known = False
-        self._check = LocaliserCheck()
+        self._check, self._frozen = LocaliserCheck(), FrozenCheck()
         self._start, self._drift, self._doubt = start, drift, doubt or Doubt()
         self._history: deque[tuple[int, Planar, float, float]] = deque(maxlen=HISTORY)
         self._distance_m, self._turned_rad = 0.0, 0.0
@@ -80,6 +80,7 @@ class PoseTracker:
         jump = self._jump(odometry)
         if jump:
             self._history.clear()
+            self._frozen = FrozenCheck()  # odometry has another frame now
             self.lose()
         elif self._history:
             last = self._history[-1][1]
@@ -140,9 +141,10 @@ class PoseTracker:
         if apart_ns > APART_NS and not self._stands():
             return f"is {apart_ns * 1e-9:.1f} s from any odometry, expected stamps of one clock"
         _, pose, distance_m, turned_rad = near
-        if self.known and (jumps := self._check.fault(seen, composed(self._to_map, pose))):
+        jumps = self._check.fault(seen, composed(self._to_map, pose)) if self.known else ""
+        if fault := self._frozen.fault(seen, pose) or jumps:
             self.lose()
-            return jumps
+            return fault
         self._to_map = composed((seen.x, seen.y, seen.phi), inverse(pose))
         self._variances, self._since = (seen.var_x, seen.var_y, seen.var_phi), (distance_m, turned_rad)
         self.known = True
