@@ -1,7 +1,7 @@
 """Hardware that fails on request, and a bus that is a list."""
 
 import threading
-from collections import Counter
+from collections import Counter, deque
 from dataclasses import replace
 
 from tailor.schemas.codec import decode
@@ -65,14 +65,13 @@ class Bus:
     """Session, inbox and publishers in one."""
 
     def __init__(self):
-        self.waiting, self.rejected, self.published = [], Counter(), {}
+        self.waiting, self.rejected, self.published = deque(), Counter(), {}
 
     def inbox(self, names, robot):
         return self
 
     def drain(self, now_ns):
-        waiting, self.waiting = self.waiting, []
-        return tuple(waiting)
+        return tuple(self.waiting.popleft() for _ in range(len(self.waiting)))
 
     def publisher(self, name, robot):
         return Published(TOPICS[name], self.published.setdefault(name, []))

@@ -15,9 +15,9 @@ from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
 from tailor.simnodes.guard import ArmRefusal, Limit
 from tailor.simnodes.hardware.device import Device
 from tailor.simnodes.hardware.node import HardwareNode
-from tailor.simnodes.hardware.watchdogs import RetryPolicy
+from tailor.simnodes.hardware.watchdogs import RetryPolicy, SensorWatch, watched_sensors
 from tests.support.patience import wait_until
-from tests.unit.simnodes.hardware.faulty import Bus, Faulty
+from tests.unit.simnodes.hardware.faulty import PATIENT_S, Bus, Faulty
 
 EXECUTIVE, PERSON = "a" * 32, "b" * 32
 SPEC = DriverSpec(
@@ -32,18 +32,22 @@ SPEC = DriverSpec(
 class Robot:
     """A node in a thread of its own."""
 
-    def __init__(self, hardware, attempts=0, spec=SPEC):
+    def __init__(self, hardware, attempts=0, spec=SPEC, watched=False):
+        """`watched`: its sensors may be silent as long as the driver allows, and not as long as a call may take."""
         self.hardware, self.bus, self.numbers = hardware, Bus(), itertools.count(1)
         retry = RetryPolicy(first_s=0.05, most_s=0.05, attempts=attempts)
         self.clock, self.reports = MonotonicClock(), []
         self.node = HardwareNode(hardware, spec, self.bus, self.clock, epoch=7, retry=retry, report=self.reports.append)
+        if not watched:  # while a machine stands still every sensor is silent
+            names = watched_sensors(each.topic for each in spec.sensors)
+            self.node._watch = SensorWatch(dict.fromkeys(names, PATIENT_S))
         self.ended, self.outcome = threading.Event(), []
         self.thread = threading.Thread(target=lambda: self.outcome.append(self.node.run(self.ended.is_set)))
         self.thread.start()
 
     def send(self, message, topic, sender=EXECUTIVE):
         sample = Sample(f"agilo/{topic}", message, self.clock.now_ns(), next(self.numbers), sender)
-        self.bus.waiting = [*self.bus.waiting, sample]
+        self.bus.waiting.append(sample)
 
     def state(self):
         states = self.bus.published["driver"]
@@ -233,7 +237,7 @@ def test_hardware_is_not_opened_while_a_call_is_still_inside_it(robot):
 
 
 def test_a_silent_sensor_stops_the_robot(robot):
-    driven = robot()
+    driven = robot(watched=True)
     driven.drive()
     driven.hardware.silent = True
     stopped_for(driven, "odom: silent for 0.5 s")
@@ -242,7 +246,7 @@ def test_a_silent_sensor_stops_the_robot(robot):
 @pytest.mark.parametrize("stamp_ns", [0, 1])
 def test_a_sensor_that_repeats_its_last_message_is_silent(robot, stamp_ns):
     """A class returned what its device's thread had left there: 8700 times a second, fresh for ever."""
-    driven = robot()
+    driven = robot(watched=True)
     driven.drive()
     last = Odometry(stamp_ns, 0.5, 0.0, 0.0, 0.3, 0.0)
     driven.hardware.read = lambda: {"odom": replace(last) if stamp_ns else last}
@@ -269,7 +273,7 @@ def test_a_class_may_return_the_mapping_of_before_filled_again(robot):
 
 def test_a_read_that_stalls_is_named_rather_than_the_sensor_that_it_leaves_silent(robot, monkeypatch):
     """Also where a busy machine lets it begin late, so that the sensor is silent for longer."""
-    driven = robot(Faulty(impatient={"read"}))
+    driven = robot(Faulty(impatient={"read"}), watched=True)
     heard = driven.node._watch.heard
     monkeypatch.setattr(driven.node._watch, "heard", lambda topic, at_ns: heard(topic, at_ns - 50_000_000))
     driven.drive()
@@ -324,7 +328,7 @@ def test_after_a_fault_nothing_from_before_it_is_written_even_if_the_loop_hangs(
 @pytest.mark.parametrize(("x", "reason"), [(math.nan, "not finite"), (1e300, "number too large")])
 def test_a_sensor_whose_measurements_every_receiver_refuses_stops_the_robot(robot, x, reason):
     """They kept it fresh: the driver stayed armed and reported nothing, while the executive had no odometry."""
-    driven = robot()
+    driven = robot(watched=True)
     driven.drive()
     driven.hardware.odometry = {"odom": Odometry(0, x, 0.0, 0.0, 0.0, 0.0)}
     stopped_for(driven, f"odom: {reason} for 0.5 s")
@@ -333,7 +337,7 @@ def test_a_sensor_whose_measurements_every_receiver_refuses_stops_the_robot(robo
 
 
 def test_one_measurement_that_is_refused_stops_nobody(robot):
-    driven = robot()
+    driven = robot(watched=True)
     driven.drive()
     for x in (math.nan, 0.0):
         driven.hardware.odometry = {"odom": Odometry(0, x, 0.0, 0.0, 0.0, 0.0)}
