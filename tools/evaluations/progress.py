@@ -8,11 +8,13 @@ from typing import TypeVar
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from tailor.tools.parallel.progress_lines import ProgressLines
+
 Item = TypeVar("Item")
 
 
 def tracked(items: Iterable[Item], title: str, total: int | None = None) -> Iterator[Item]:
-    """The items, with a bar that grows as they are taken and disappears at the end; none without a terminal.
+    """The items, with a bar that grows as they are taken and disappears at the end; without a terminal, with lines.
 
     Args:
       items: As they come.
@@ -22,6 +24,10 @@ def tracked(items: Iterable[Item], title: str, total: int | None = None) -> Iter
     if total is None and isinstance(items, Sized):
         total = len(items)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    console = Console(stderr=True)
-    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
-        yield from progress.track(items, total=total, description=title)
+    console, lines = Console(stderr=True), ProgressLines()
+    with Progress(*columns, transient=True, console=console, disable=lines.on) as progress:
+        done = 0
+        lines.report(title, done, total)
+        for done, item in enumerate(progress.track(items, total=total, description=title), 1):
+            yield item
+            lines.report(title, done, total)

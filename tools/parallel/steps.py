@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
+from tailor.tools.parallel.progress_lines import ProgressLines
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -34,7 +36,7 @@ def counted(title: str, running: Iterable[int], total: int, done: int = 0) -> It
 
 
 def show(steps: Iterable[Step], quiet: bool, reached: dict[str, tuple[Step, Step]], prefix: str = "") -> None:
-    """Run steps with a progress bar each.
+    """Run steps with a progress bar each; without a terminal, with lines.
 
     Args:
       steps: The work.
@@ -43,11 +45,13 @@ def show(steps: Iterable[Step], quiet: bool, reached: dict[str, tuple[Step, Step
       prefix: Before the title of each step.
     """
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), disable=quiet) as progress:
+    lines = ProgressLines(quiet)
+    with Progress(*columns, console=Console(stderr=True), disable=quiet or lines.on) as progress:
         tasks: dict[str, TaskID] = {}
         for step in steps:
             first, _ = reached.get(step.title, (step, step))
             reached[step.title] = first, step
+            lines.report(f"{prefix}{step.title}", step.done, step.total)
             if step.title not in tasks:
                 tasks[step.title] = progress.add_task(f"{prefix}{step.title}", total=step.total)
             progress.update(tasks[step.title], completed=step.done)

@@ -25,6 +25,7 @@ from tailor.tools.learning.training_request import (
     TrainingRequest,
 )
 from tailor.tools.learning.training_run import train_models
+from tailor.tools.parallel.progress_lines import ProgressLines
 
 # named here so that --help loads no learning library
 DURATION_LEARNERS = (
@@ -99,10 +100,12 @@ def _trained(request: TrainingRequest) -> list[dict[str, Any]]:
     """Rows of the trained models; a bar counts the actions."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+    lines = ProgressLines()
+    with Progress(*columns, console=console, transient=True, disable=lines.on) as progress:
         bar = progress.add_task("reading data sets", total=None)
 
         def on_action(action: str, number: int, total: int) -> None:
+            lines.report(f"training {action}", number, total)
             progress.update(bar, description=f"training {action}", completed=number, total=total)
 
         return train_models(request, on_action)

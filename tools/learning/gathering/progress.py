@@ -12,6 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.parallel.progress_lines import ProgressLines
 from tailor.tools.parallel.steps import Step, show
 
 
@@ -20,10 +21,14 @@ def gathered(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
     left, started = random_episodes.missing_episodes(spec), time.perf_counter()
     simulated = busy = 0.0
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=quiet) as progress:
-        task = progress.add_task(spec.action, total=spec.episodes, completed=spec.episodes - left, rate="")
+    lines, done = ProgressLines(quiet), spec.episodes - left
+    lines.report(spec.action, done, spec.episodes)
+    hidden = quiet or lines.on
+    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=hidden) as progress:
+        task = progress.add_task(spec.action, total=spec.episodes, completed=done, rate="")
         for count, sim_s, wall_s in random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs):
-            simulated, busy = simulated + sim_s, busy + wall_s
+            simulated, busy, done = simulated + sim_s, busy + wall_s, done + count
+            lines.report(spec.action, done, spec.episodes)
             speed = simulated / busy if busy else 0.0
             progress.update(task, advance=count, rate=f"{speed:.0f} × real time per core")
     return {
