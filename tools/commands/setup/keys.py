@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     roles = registered_roles(arguments.keys)
     if arguments.action == "list":
         lines = "\n".join(f"{name}: {role}" for name, role in sorted(roles.items()))
-        _report(arguments, lines, roles)
+        _report(arguments, lines or f"{arguments.keys}: no keys", roles)
     elif arguments.action == "revoke":
         _revoke(arguments, roles)
     else:
@@ -118,8 +118,8 @@ def _revoke(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
 
 
 def _report(arguments: argparse.Namespace, words: str, value: Mapping[str, str]) -> None:
-    """Print the words, if any, or the value as JSON."""
+    """Print the words, or the value as JSON."""
     if arguments.json:
         print(json.dumps(value, sort_keys=True))
-    elif words:
+    else:
         print(words)

@@ -198,6 +198,11 @@ def test_a_flag_of_another_action_is_not_ignored(keys, capsys, words, wrong):
     assert registered_roles(str(keys)) == {"driving": "driver"}
 
 
+def test_a_folder_without_keys_is_named(tmp_path, capsys):
+    assert main(["keys", "list", "--keys", str(tmp_path)]) == 0
+    assert capsys.readouterr().out == f"{tmp_path}: no keys\n"
+
+
 def test_a_file_is_no_folder_of_keys(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["keys", "list", "--keys", str(tmp_path / "file")]) == 2
