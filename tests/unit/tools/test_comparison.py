@@ -20,6 +20,7 @@ from tailor.schemas.messages import (
     JointCommand,
     Odometry,
     Parameter,
+    RefinementReport,
     Subgoals,
     TickReport,
     VelocityCommand,
@@ -238,6 +239,15 @@ def test_info_in_words_names_the_actions(tmp_path, capsys):
     assert "goToPose done 4.00 5.00 +25%" in " ".join(output.split())
     assert "driver stopped: agilo: r" in output
     assert "ticks, ms: late p50 10.5, p99 19.8, max 20.0; work p50 " in output
+
+
+def test_info_names_each_topic_in_full_on_a_terminal_of_80_columns(tmp_path, capsys, monkeypatch):
+    script = Script(tmp_path / "a.mcap")
+    script.say(0, "exec/refinement", example(RefinementReport))
+    monkeypatch.setenv("FORCE_COLOR", "1")  # as on a terminal
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main(["info", script.close()]) == 0
+    assert "exec/refinement" in capsys.readouterr().out
 
 
 def test_info_of_a_damaged_file_reports_it_and_returns_1(tmp_path, capsys):

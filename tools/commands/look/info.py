@@ -162,7 +162,7 @@ def _actions(rows: list[dict[str, Any]]) -> Table:
 def _table(words: tuple[str, ...], numbers: tuple[str, ...]) -> Table:
     table = Table(box=None)
     for name in words:
-        table.add_column(name)
+        table.add_column(name, no_wrap=name == words[0])  # a narrow terminal cuts off the others
     for name in numbers:
         table.add_column(name, justify="right")
     return table
