@@ -78,7 +78,7 @@ class ChoicePanel {
       Math.abs(saved) < 0.005
         ? "as good as greedy"
         : `${Math.abs(saved).toFixed(2)} s ${saved > 0 ? "better" : "worse"} than greedy (${((100 * Math.abs(saved)) / greedy).toFixed(1)} %)`;
-    return html("p", { class: "verdict" }, html("b", { text: verdict }), ` in the objective over ${words}.`);
+    return html("p", { class: "verdict" }, html("b", { text: verdict }), ` in the objective over ${words}${traded(why)}.`);
   }
 
   table(why, chosen, greedy) {
@@ -174,6 +174,17 @@ class ChoicePanel {
         : html("p", { class: "empty", text: "No parameter was free." }),
     ];
   }
+}
+
+/** What was paid for what, in words: the action that takes most longer than by greedy values, and that which takes most less. */
+function traded(why) {
+  if ([...why.chosen, ...why.greedy].includes(null)) return "";
+  const longer = why.actions.map((_, i) => why.chosen[i] - why.greedy[i]);
+  const [most, least] = [Math.max(...longer), Math.min(...longer)];
+  if (!(most >= 0.005 && least <= -0.005)) return "";
+  const name = (i) => why.actions[i] + (why.actions.filter((a) => a === why.actions[i]).length > 1 ? ` (${i + 1})` : "");
+  const [slow, quick] = [name(longer.indexOf(most)), name(longer.indexOf(least))];
+  return `: ${slow} takes ${seconds(most)} longer than by the greedy choice, ${quick} ${seconds(-least)} less`;
 }
 
 function sum(values) {
