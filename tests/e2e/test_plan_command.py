@@ -235,7 +235,8 @@ def test_pddl_outside_the_language_is_reported_with_its_place(capsys, tmp_path):
     ("arguments", "message"),
     [
         ([DOMAIN, "nowhere.pddl"], "nowhere.pddl: cannot be read: No such file or directory"),
-        ([DOMAIN, DOMAIN], "kitchen-domain.pddl:2:9: expected (problem name)"),
+        ([DOMAIN, DOMAIN], "kitchen-domain.pddl:2:9: expected (problem name), found (domain ...)"),
+        ([PROBLEM, DOMAIN], "kitchen-s1.pddl:1:9: expected (domain name), found (problem ...)"),
         ([DOMAIN, DURATIVE[1]], "expected"),
         ([DOMAIN, PROBLEM, "-f", "FOO"], "flaw order 'FOO': expected a name"),
         ([DOMAIN, PROBLEM, "-h", "FOO"], "ranking 'FOO' is unknown"),

@@ -74,7 +74,8 @@ def define_name(form: Form, kind: str) -> str:
         raise form.place.error(f"expected (define ({kind} ...) ...)")
     title = form_of(form.items[1], f"({kind} name)")
     if title.head != kind or len(title.items) != 2:
-        raise title.place.error(f"expected ({kind} name)")
+        found = f", found ({title.head} ...)" if title.head not in (kind, "") else ""
+        raise title.place.error(f"expected ({kind} name){found}")
     return name_of(title.items[1], f"the {kind}'s name")
 
 
