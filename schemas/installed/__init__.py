@@ -33,7 +33,7 @@ def spec_of(name: str) -> DomainSpec:
       UsageError: There is none, or its package is at fault; the message lists the known names, or all faults.
     """
     named = [package for package in packages() if package.name == name]
-    return _usable(named, f"no domain {name!r}, expected one of: {', '.join(domain_names())}")
+    return _usable(named, f"no domain {name!r}, expected one of: {', '.join(domain_names())}{_meant(name)}")
 
 
 def spec_of_robot(robot: str) -> DomainSpec:
@@ -44,9 +44,10 @@ def spec_of_robot(robot: str) -> DomainSpec:
     """
     owners = [package for package in packages() if package.spec and package.spec.robot == robot]
     unread = [package for package in packages() if package.spec is None]  # the robot's package may be one of them
+    none = f"no robot {robot!r}, expected one of: {', '.join(robot_names())}{_meant(robot)}"
     return _usable(
         owners or [package for package in unread if package.name == robot],
-        "; ".join([f"no robot {robot!r}, expected one of: {', '.join(robot_names())}", *map(_refusal, unread)]),
+        "; ".join([none, *map(_refusal, unread)]),
     )
 
 
@@ -59,6 +60,13 @@ def _usable(found: Iterable[Package], otherwise: str) -> DomainSpec:
             return package.spec
         faulty.append(_refusal(package))
     raise UsageError("; ".join(faulty) or otherwise)
+
+
+def _meant(name: str) -> str:
+    """Which robot is of which domain, where the one was named for the other."""
+    specs = [package.spec for package in packages() if package.spec and not _faults(package)]
+    meant = [f" ({each.robot} is the robot of {each.name})" for each in specs if name in (each.name, each.robot)]
+    return "".join(meant)
 
 
 def _refusal(package: Package) -> str:

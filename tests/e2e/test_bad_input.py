@@ -38,6 +38,7 @@ def line_of(code, output, errors):
 
 MISTAKES = [
     (("up", "chess"), "no domain 'chess', expected one of: "),
+    (("up", "agilo"), "no domain 'agilo', expected one of: arm, kitchen, soccer (agilo is the robot of soccer)"),
     (("up", "soccer", "--scenario", "nope"), "no scenario 'nope' in soccer, expected one of: approach-dribble"),
     (("up", "soccer", "--seed", "-1"), "--seed is -1, expected at least 0"),
     (("up", "soccer", "--horizon", "0"), "--horizon is 0, expected at least 1"),
@@ -48,6 +49,7 @@ MISTAKES = [
         "planner command ''vhpop': cannot be started: No closing quot",
     ),
     (("sim", "hal"), "no robot 'hal', expected one of: powercube, b21, agilo"),
+    (("sim", "soccer"), "expected one of: powercube, b21, agilo (agilo is the robot of soccer)"),
     (("driver", "nowhere:Rover"), "nowhere:Rover: No module named 'nowhere', expected package.module:Class"),
     (("check-driver", "hal"), "no robot 'hal', expected one of: "),
     (("check-driver", "agilo", "--speed", "0.9"), "--speed is 0.9, expected more than 0 and at most 0.3"),
