@@ -16,6 +16,7 @@ from tailor.schemas.messages import Contexts, RefinementReport, Subgoals
 from tailor.schemas.parsed_files import table_of
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.viewer.event_fields import Fields, number
+from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
 from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
@@ -110,7 +111,16 @@ def fields_of(explanation: Explanation) -> Fields:
         **(
             {"energy": [_numbers(explanation.chosen_j), _numbers(explanation.greedy_j)]} if explanation.chosen_j else {}
         ),
+        **({"avoided": _avoided(explanation.avoided)} if explanation.avoided else {}),
         "parameters": [_parameter(parameter) for parameter in explanation.parameters],
+    }
+
+
+def _avoided(failure: AvoidedFailure) -> Fields:
+    return {
+        "action": failure.action,
+        "straight": number(failure.straight),
+        "by_subgoal": number(failure.by_subgoal),
     }
 
 

@@ -10,6 +10,7 @@ from tailor.models.rules.rule_text import UNITLESS
 from tailor.schemas.messages import RefinementReport
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.decisions import Decision
+from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
 
@@ -37,12 +38,22 @@ def explanation_lines(
     explanation: Explanation, best_cost: float, decision: Decision, not_certified: str = NO_BOUND
 ) -> list[str]:
     """Lines below the table of durations; `best_cost`: of a long search; `not_certified`: why there is no bound."""
-    lines = [parameter_text(parameter) for parameter in explanation.parameters]
+    lines = [] if explanation.avoided is None else [avoided_text(explanation.avoided)]
+    lines += [parameter_text(parameter) for parameter in explanation.parameters]
     for situation in explanation.situations:
         lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
     long_search = long_search_text(explanation.chosen_cost, best_cost)
     certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost), not_certified)
     return [*lines, long_search, certified, search_text(decision, explanation.chosen_cost)]
+
+
+def avoided_text(avoided: AvoidedFailure) -> str:
+    """Why a subgoal was asserted."""
+    straight, by_subgoal = f"{100 * avoided.straight:.0f} %", f"{100 * avoided.by_subgoal:.0f} %"
+    return (
+        f"subgoal asserted: straight to its goal {plain(avoided.action)} is predicted to fail with {straight}, "
+        f"by way of the subgoal with {by_subgoal}"
+    )
 
 
 def parameter_text(free: FreeParameter) -> str:

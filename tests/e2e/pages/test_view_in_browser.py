@@ -356,6 +356,14 @@ def test_opponents_of_the_robots_scene_are_drawn_where_they_stand(browser: Brows
     assert browser.errors == []
 
 
+def test_the_page_says_why_a_subgoal_was_asserted(browser: Browser, tmp_path: Path) -> None:
+    rows = recorded_events(ROOT / "tests" / "data" / "golden" / "soccer-opponents.mcap", RunTimeline(Explainer()))
+    opened(browser, written(tmp_path / "why.html", rows), 4.0)
+    words = "By way of a subgoal: straight to its goal goToPose is predicted to fail with 9. %, this way with 1 %."
+    assert re.fullmatch(words, text(browser, "#choice .verdict"))
+    assert browser.errors == []
+
+
 def test_an_empty_run_is_a_page_and_not_an_error(browser: Browser, tmp_path: Path) -> None:
     opened(browser, written(tmp_path / "empty.html", []))
     assert "No subgoals yet" in text(browser, "#choice .body")

@@ -55,11 +55,19 @@ class ChoicePanel {
       ),
     );
     return [
+      ...(why.avoided ? [this.avoided(why.avoided)] : []),
       this.verdict(why),
       this.table(why, sum(why.chosen), sum(why.greedy)),
       html("div", { class: "chips", role: "group", "aria-label": "free parameter" }, ...chips),
       this.plots(why, shown),
     ];
+  }
+
+  /** Why a subgoal was asserted. */
+  avoided({ action, straight, by_subgoal }) {
+    const share = (p) => (p === null ? "–" : `${(100 * p).toFixed(0)} %`);
+    const words = `: straight to its goal ${action} is predicted to fail with ${share(straight)}, this way with ${share(by_subgoal)}.`;
+    return html("p", { class: "verdict" }, html("b", { text: "By way of a subgoal" }), words);
   }
 
   /** The objective of refinement: duration, its spread, and the risk of failure. */

@@ -19,6 +19,7 @@ from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas import messages as m
+from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure, avoided_failure
 from tailor.tools.viewer.explanations.decided_sequence import accepted, chosen_values, objective_of, sequence_of
 from tailor.tools.viewer.explanations.situation import Situation, situations_of
 
@@ -52,6 +53,7 @@ class Explanation:
     situations: tuple[Situation, ...] = ()  # one for each action, where its model says what it sees
     chosen_j: tuple[float, ...] = ()  # predicted energies, where energy is weighed
     greedy_j: tuple[float, ...] = ()
+    avoided: AvoidedFailure | None = None  # by the asserted subgoals that it begins with, if any
 
 
 def explain(
@@ -92,6 +94,7 @@ def explain(
         situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
         tuple(chosen_j) if settings.energy_weight else (),
         tuple(greedy_j) if settings.energy_weight else (),
+        avoided_failure(sequence, chosen, models, settings),
     )
 
 
