@@ -93,15 +93,18 @@ def _with_seeds(report: Report) -> Report:
 
 
 def shown(value: object) -> str:
-    """A cell as text; numbers with significant digits."""
+    """A cell as text; numbers with significant digits, a dash where there is none: too few runs have no interval."""
     if isinstance(value, float):
+        if math.isnan(value):
+            return "–"
         if value != 0 and abs(value) < 0.001:
             return f"{value:.1e}"
         return f"{value:.3f}" if abs(value) < 0.1 else f"{value:.2f}"
     if value is None:
         return ""
     if isinstance(value, tuple | list):
-        return " .. ".join(shown(part) for part in value)
+        parts = [shown(part) for part in value]
+        return "–" if set(parts) == {"–"} else " .. ".join(parts)
     return str(value)
 
 

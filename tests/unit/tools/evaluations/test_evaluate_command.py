@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 import types
@@ -14,7 +15,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations import catalogue
 from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
-from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report, shown
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.launch.checks import package_check
 from tailor.tools.main import main
@@ -229,6 +230,20 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
     said = json.loads(capsys.readouterr().out)
     assert said["rows"] == [{"scenario": "first", "n": 3}]
     assert json.loads((tmp_path / "first.json").read_text()) == said
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (math.nan, "–"),
+        ((math.nan, math.nan), "–"),
+        ((1.0, math.nan), "1.00 .. –"),
+        ((0.5, 2.0), "0.50 .. 2.00"),
+        ((), ""),
+    ],
+)
+def test_what_is_no_number_is_a_dash_in_a_table(value, text):
+    assert shown(value) == text
 
 
 def test_what_is_no_number_is_null_in_json(capsys):
