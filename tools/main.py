@@ -117,7 +117,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
     except OSError as error:  # of a named path, or of standard output, which has no name
         path = "" if error.filename is None else f"{error.filename}: "
-        _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}')}")
+        expected = ", expected a folder" if isinstance(error, FileExistsError | NotADirectoryError) else ""
+        _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}{expected}')}")
         return 1 if error.filename is None else 2
 
 

@@ -49,6 +49,13 @@ def test_what_was_probably_meant_is_asked_for(capsys, words, meant):
     assert f", did you mean {meant}? (see tailor" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", [["demo", "--output"], ["letters", "A", "--output"]])
+def test_a_file_in_the_place_of_a_folder_is_named_with_what_was_expected(capsys, tmp_path, command):
+    (tmp_path / "file").touch()
+    assert main([*command, str(tmp_path / "file")]) == 2
+    assert capsys.readouterr().err == f"tailor {command[0]}: {tmp_path / 'file'}: File exists, expected a folder\n"
+
+
 def test_names_may_follow_flags(capsys):
     assert main(["models", "list", "--zoo", str(ROOT / "models/zoo"), "powercube", "--json"]) == 0
     printed = capsys.readouterr().out
