@@ -1,5 +1,6 @@
 """The `tailor` command: version, overview, help, unknown commands."""
 
+import argparse
 import importlib
 import io
 import re
@@ -54,6 +55,15 @@ def test_a_file_in_the_place_of_a_folder_is_named_with_what_was_expected(capsys,
     (tmp_path / "file").touch()
     assert main([*command, str(tmp_path / "file")]) == 2
     assert capsys.readouterr().err == f"tailor {command[0]}: {tmp_path / 'file'}: File exists, expected a folder\n"
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_says_what_each_word_does_of_which_one_has_to_be_chosen(command):
+    parser = argparse.ArgumentParser()
+    importlib.import_module(COMMANDS[command][0]).configure(parser)
+    placed = [each for each in parser._actions if not each.option_strings and each.metavar is None]
+    chosen = [each for each in placed if len(each.choices or ()) > 1]
+    assert [word for each in chosen for word in each.choices if f"{word}: " not in each.help] == []
 
 
 def test_names_may_follow_flags(capsys):

@@ -54,9 +54,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    checks = "run all checks (exit code 1 if any fails)"
-    verbs = f"one line per model; its card; its rules; pictures; {checks}; share; get and check"
-    parser.add_argument("verb", choices=VERBS, help=verbs)
+    checks = "check: run all checks (exit code 1 if any fails)"
+    seen = "list: one line per model; show: its card; rules: the model as rules; plot: pictures"
+    parser.add_argument("verb", choices=VERBS, help=f"{seen}; {checks}; push: share; pull: get and check")
     parser.add_argument("models", nargs="*", default=[], metavar="MODEL", help="models (default: all)")
     parser.add_argument("--zoo", type=Path, help="folder of models (default: the one of the robot)")
     data = "plot, rules: folder with data sets (default: data/ROBOT); push, pull: data sets there instead of models"

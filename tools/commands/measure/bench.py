@@ -51,10 +51,11 @@ USED_BY = {  # option -> benchmarks that use it
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor bench`."""
-    rows = "; ".join(f"{name}: {text}" for name, text in {**BENCHMARKS, **ON_REQUEST}.items())
-    parser.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"benchmarks to run (default: all but the last three). {rows}"
-    )
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    rows = (f"  {name:10s} {text}" for name, text in {**BENCHMARKS, **ON_REQUEST}.items())
+    parser.epilog = "\n".join(["benchmarks:", *rows])
+    unnamed = f"all but {', '.join(ON_REQUEST)}"
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run, see below (default: {unnamed})")
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
     parser.add_argument("--scale", action="store_true", help="planning: times of planning and of ticks as steps grow")
     parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")

@@ -30,10 +30,12 @@ DAYS = 825  # two years and a quarter, as many clients accept at most
 MAX_DAYS = 9999
 SESSION = "session.json5"
 
+VERBS = "new: make a key; list: names and their roles; revoke: take a name's rights at the next start of the bus"
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor keys`."""
-    parser.add_argument("action", choices=("new", "list", "revoke"), help="what to do")
+    parser.add_argument("action", choices=("new", "list", "revoke"), help=VERBS)
     parser.add_argument("name", nargs="?", default="", help="name of a process, e.g. agilo-driver")
     parser.add_argument("--role", choices=get_args(Role), help="what it may do; not for the name 'router'")
     parser.add_argument(
