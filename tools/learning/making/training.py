@@ -27,28 +27,29 @@ WHOLE = "whole"  # marker of a folder of models, written last
 
 def train_all(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...]) -> Iterator[Step]:
     """Train into a zoo as `tailor train` does, unless that has been done; yields progress."""
-    title = f"training {zoo.name}"
+    title, total = f"training {zoo.name}", 1
     if not (zoo / WHOLE).exists():
-        yield Step(title, 0, 1)
         near = [making.beside] if making.recipe.beside else []
         present = tuple(folder for folder in (*data, *near) if any(folder.glob(f"*/{MANIFEST}")))
         if not present:
             raise UsageError(f"{making.work}: no episodes to train on")
-        _train(making, training_request(making, zoo, present, kinds))
+        for done, total in _train(making, training_request(making, zoo, present, kinds)):
+            yield Step(title, done, total)
         (zoo / WHOLE).touch()
-    yield Step(title, 1, 1)
+    yield Step(title, total, total)
 
 
-def _train(making: Making, request: TrainingRequest) -> None:
-    """Train each model in a process of its own: equal bits for any number of jobs."""
+def _train(making: Making, request: TrainingRequest) -> Iterator[tuple[int, int]]:
+    """Train each model in a process of its own, equal bits for any number of jobs; yields how many of them are done."""
     own = {each.action: each.learner for each in making.recipe.training.learners}
     each = [
         dataclasses.replace(request, actions=(action,), kinds=(kind,), learner=own.get(action, request.learner))
         for kind in request.kinds or KINDS
         for action in data_sets(request)
     ]
-    for _ in Processes().completed(train_models, [(one,) for one in each], making.jobs):
-        pass
+    yield 0, len(each)
+    for done, _ in enumerate(Processes().completed(train_models, [(one,) for one in each], making.jobs), 1):
+        yield done, len(each)
 
 
 def training_request(

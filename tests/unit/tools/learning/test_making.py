@@ -40,11 +40,12 @@ def trained(monkeypatch) -> list:
     """Requests of training, which writes a card and no model."""
     requests = []
 
-    def train(making, request) -> None:
+    def train(making, request) -> list:
         requests.append(request)
         folder = request.zoo / request.robot / "goToPose"
         folder.mkdir(parents=True)
         (folder / "duration.card.json").write_text(f"of {len(request.data)}")
+        return []
 
     monkeypatch.setattr(training, "_train", train)
     monkeypatch.setattr(steps, "check_complete", lambda _: None)
@@ -120,7 +121,8 @@ def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypat
     monkeypatch.setattr(training, "train_models", requests.append)
     whole = TrainingRequest("agilo", tmp_path, data=(tmp_path,), kinds=("duration", "success"))
     own = Training(learners=(OwnLearner("reach", "bag"),))
-    training._train(Making("agilo", replace(TINY, training=own), tmp_path, 1, "make"), whole)
+    progress = list(training._train(Making("agilo", replace(TINY, training=own), tmp_path, 1, "make"), whole))
+    assert progress == [(done, 4) for done in range(5)], "a long training is no silence"
     each = [(request.actions, request.kinds, request.learner) for request in requests]
     assert each == [((a,), (k,), n) for k in whole.kinds for a, n in (("goToPose", whole.learner), ("reach", "bag"))]
     usual = {replace(request, actions=(), kinds=whole.kinds, learner=whole.learner) for request in requests}
