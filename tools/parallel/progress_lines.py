@@ -8,11 +8,11 @@ from collections.abc import Callable
 
 from rich.console import Console
 
-EVERY_S = 60.0  # at most so often between the begin and the end of a step
+EVERY_S = 60.0  # at most so often between the start and the end of a step
 
 
 class ProgressLines:
-    """Prints the begin and the end of each step, and its progress once a minute; nothing on a terminal.
+    """Prints the start and the end of each step, and its progress once a minute; nothing on a terminal.
 
     Attributes:
       on: Whether lines are printed.

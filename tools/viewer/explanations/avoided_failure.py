@@ -28,7 +28,7 @@ class AvoidedFailure:
 def avoided_failure(
     sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
 ) -> AvoidedFailure | None:
-    """Failure that the asserted subgoals at the begin of a sequence avoid; None if it begins with none."""
+    """Failure that the asserted subgoals at the start of a sequence avoid; None if it begins with none."""
     unit = sequence.units()[0]
     if not unit[0].asserted or unit[-1].asserted:
         return None

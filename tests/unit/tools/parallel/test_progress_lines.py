@@ -1,4 +1,4 @@
-"""A log of long work grows while the work goes on: a line at the begin and end of each step, and one a minute."""
+"""A log of long work grows while the work goes on: a line at the start and end of each step, and one a minute."""
 
 import io
 import sys
