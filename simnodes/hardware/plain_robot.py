@@ -138,7 +138,8 @@ class PlainRobot(Hardware):
                 self._tracker.lose()
                 known_again = "the localiser speaks" if self._settings.topics.pose else "the driver is started again"
                 raise ValueError(f"{name}: {fault}; the pose is unknown until {known_again}")
-            if fault := self._repetition.fault(message, self._command_sent, time.monotonic()):
+            command = self._command_sent if self._settings.obeys else (0.0, 0.0)
+            if fault := self._repetition.fault(message, command, time.monotonic()):
                 raise ValueError(f"{name}: {fault}")
         elif isinstance(message, PoseEstimate):
             self._located = True

@@ -66,6 +66,7 @@ class PlainSettings:
     robot: str = ""
     command: Literal["twist", "twist_stamped"] = "twist_stamped"
     rate_hz: float = 20.0  # of the command
+    obeys: bool = True  # False: what is behind the driver may hold the base, e.g. a collision monitor
     bus: RobotBus = field(default_factory=RobotBus)
     topics: TopicNames = field(default_factory=TopicNames)
     frames: Frames = field(default_factory=Frames)

@@ -104,6 +104,17 @@ def test_frozen_odometry_that_looks_fresh_is_a_fault_while_the_robot_moves(monke
             wait_until(lambda: odometry.publish_encoded(codec.encode(next(frozen))) and not robot.read())
 
 
+def test_a_base_that_others_may_hold_need_not_obey(monkeypatch):
+    """A collision monitor behind the driver held it, and the robot waited for people to arm it again."""
+    monkeypatch.setattr(odometry_check, "DEAD_S", 0.0)
+    with opened("plain") as (odometry, robot):
+        robot._settings = replace(robot._settings, obeys=False)
+        robot.write((99.0, 0.0))
+        for stamp_ns in range(1, 12):
+            odometry.publish_encoded(codec.encode(replace(ODOMETRY, stamp_ns=stamp_ns, v=0.0, omega=0.0)))
+            assert wait_until(robot.read)["odom"].stamp_ns == stamp_ns
+
+
 @pytest.mark.promise("P63")
 def test_a_localiser_that_is_lost_is_a_fault_and_gives_no_pose():
     with opened("plain") as (odometry, robot):
