@@ -65,7 +65,7 @@ def test_the_prepared_bytes_are_those_of_the_codec():
 
 def test_the_button_is_pressed_until_every_driver_confirms():
     bus = Bus(agilo=confirms(3), nomad=confirms(40))
-    states = StopButton(bus).press()
+    states = StopButton(bus).press(20.0)
     assert len(bus.sent) > 40
     assert set(bus.sent) == {STOP}
     assert all_stopped(states)
