@@ -23,7 +23,8 @@ P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000
 SAME = 1e-9  # share by which equal differences of seconds may differ, as their sums are rounded
 DIGITS = 6  # of the differences whose ranks are tested: rounding errors would rank those that are equal
-MIN_RESAMPLED = 10  # units of a bootstrap: of three the 95 % interval holds the truth in 75 % of cases, of ten in 90 %
+MIN_RESAMPLED = 10  # units of a bootstrap: of three the 95 % interval holds the truth in 75 % of cases, of ten in 91 %
+MIN_ALIKE = 6  # values without spread that tell anything: by the sign test, 2^(1-5) is more than 5 %
 MIN_UNITS = 3  # the t-interval over two is 12.7 standard errors wide either way, whatever happened within each
 
 
@@ -90,7 +91,7 @@ def compare(baseline_s: ArrayLike, refined_s: ArrayLike, units: Units | None = N
         (100 * low, 100 * high),
         _dependent_t_test(firsts, seconds),
         _rank_test(firsts, seconds),
-        100 * float(np.mean(second > first)),
+        100 * float(np.mean(is_longer(second, first))),
     )
 
 
@@ -117,6 +118,11 @@ def compare_shares(first: ArrayLike, second: ArrayLike, units: Units | None = No
     return Difference(100 * float(one.mean()), 100 * float(other.mean()), interval, p_value)
 
 
+def is_longer(some_s: Array, than_s: Array) -> NDArray[np.bool_]:
+    """Where durations are longer by more than rounding: of equal ticks the difference depends on when they began."""
+    return np.round(some_s - than_s, DIGITS) > 0
+
+
 def by_unit(values: Array, units: Units | None) -> Array:
     """Mean of each unit's values, in the order of first appearance; the values themselves without units."""
     if units is None:
@@ -126,24 +132,37 @@ def by_unit(values: Array, units: Units | None) -> Array:
 
 
 def mean_interval(values: Array) -> tuple[float, float]:
-    """95 % t-interval of the mean of independent values, shape (n,)."""
-    if len(values) < 2:
+    """95 % t-interval of the mean of independent values, shape (n,); infinite where these tell nothing.
+
+    That of a few without any spread would be empty, however few they are: see MIN_ALIKE.
+    """
+    if len(values) < 2 or (len(values) < MIN_ALIKE and np.ptp(values) <= SAME * np.abs(values).max()):
         return -np.inf, np.inf
     half = float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
     return float(values.mean()) - half, float(values.mean()) + half
 
 
-def ratio_interval(parts: Array, wholes: Array) -> tuple[float, float]:
-    """95 % bootstrap interval over units of sum(parts) / sum(wholes); shapes (n,).
+def ratio_interval(parts: Array, wholes: Array, seed: int = 0) -> tuple[float, float]:
+    """95 % bootstrap interval over units of sum(parts) / sum(wholes); shapes (n,). Resamples are drawn with the seed.
 
     NaN for fewer than MIN_RESAMPLED units, or if all wholes are 0; resamples whose wholes are 0 are left out.
     """
     if len(parts) < MIN_RESAMPLED or not wholes.any():
         return math.nan, math.nan
-    drawn = np.random.default_rng(0).integers(len(parts), size=(RESAMPLES, len(parts)))
+    drawn = np.random.default_rng(seed).integers(len(parts), size=(RESAMPLES, len(parts)))
     sums = wholes[drawn].sum(axis=1)
-    low, high = np.percentile(parts[drawn].sum(axis=1)[sums != 0.0] / sums[sums != 0.0], [2.5, 97.5])
+    low, high = np.quantile(parts[drawn].sum(axis=1)[sums != 0.0] / sums[sums != 0.0], bootstrap_tails(len(parts)))
     return float(low), float(high)
+
+
+def bootstrap_tails(n: int) -> tuple[float, float]:
+    """Quantiles of the resamples of n >= 2 units between which a 95 % interval lies.
+
+    Those of the expanded percentile interval (Hesterberg 2015). Resamples spread less than samples do, by the root of
+    (n - 1) / n, and like a normal distribution, not t: with 2.5 % a side that of ten held the truth in 87 % of cases.
+    """
+    tail = float(stats.norm.cdf(stats.t.ppf(0.025, n - 1) * np.sqrt(n / (n - 1))))
+    return tail, 1 - tail
 
 
 def share_interval(count: int, n: int) -> tuple[float, float]:

@@ -95,7 +95,7 @@ def _with_seeds(report: Report) -> Report:
 def shown(value: object) -> str:
     """A cell as text; numbers with significant digits, a dash where there is none: too few runs have no interval."""
     if isinstance(value, float):
-        if math.isnan(value):
+        if not math.isfinite(value):
             return "–"
         if value != 0 and abs(value) < 0.001:
             return f"{value:.1e}"

@@ -238,6 +238,7 @@ def test_json_of_a_report_has_its_rows(tmp_path, capsys):
         (math.nan, "–"),
         ((math.nan, math.nan), "–"),
         ((1.0, math.nan), "1.00 .. –"),
+        ((-math.inf, math.inf), "–"),
         ((0.5, 2.0), "0.50 .. 2.00"),
         ((), ""),
     ],
