@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import DataSet
+from tailor.tools.evaluations.paired_comparison import ratio_interval
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import NOISE_STREAM
 from tailor.tools.lockstep import action_run
@@ -21,7 +22,6 @@ REPEATS = 8  # runs of the same task with other noise
 # by 1.074 if Laplacian (200 000 draws of each).
 OF_OWN_MEDIAN = 1.087
 REPEATED_TASKS = 1000
-RESAMPLES = 2000
 
 
 def floor_columns(row: Mapping[str, Any], data: DataSet, action: tuple[str, str, int, int]) -> dict[str, Any]:
@@ -40,7 +40,8 @@ def floor_columns(row: Mapping[str, Any], data: DataSet, action: tuple[str, str,
     off_s = np.abs(row["predicted_s"] - row["observed_s"])[: len(tasks)]
     found: dict[str, Any] = {"noise_floor_s": float(floor_s.mean())}
     if floor_s.any():  # a simulation without noise has none
-        found["over_floor"], found["over_floor_ci95"] = _ratio(off_s, floor_s, np.random.default_rng(seed))
+        found["over_floor"] = float(off_s.mean() / floor_s.mean())
+        found["over_floor_ci95"] = ratio_interval(off_s, floor_s, seed)
     if "failure_accuracy_pct" in row:
         found["floor_accuracy_pct"] = float(100 * alike.mean())
     return found
@@ -81,12 +82,3 @@ def _repeated(robot: str, action: str, arguments: Array, seed: int, task: int) -
 
 def _finite(values: Array) -> Array:
     return values[np.isfinite(values)]
-
-
-def _ratio(off_s: Array, floor_s: Array, rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
-    """Ratio of the means over the same tasks, and its 95 % interval over the resamples in which runs differ at all."""
-    drawn = rng.integers(len(off_s), size=(RESAMPLES, len(off_s)))
-    off, floor = off_s[drawn].mean(axis=1), floor_s[drawn].mean(axis=1)
-    measured = floor > 0.0  # of a few tasks, all that are drawn may repeat exactly
-    low, high = np.percentile(off[measured] / floor[measured], (2.5, 97.5))
-    return float(off_s.mean() / floor_s.mean()), (float(low), float(high))

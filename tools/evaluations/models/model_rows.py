@@ -23,6 +23,7 @@ from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns, predicted_by
 from tailor.tools.evaluations.models.floors import floor_columns
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
+from tailor.tools.evaluations.paired_comparison import ratio_interval
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
 
@@ -97,7 +98,7 @@ def duration_columns(
     predicted = predicted_by(durations[path], beside, examples.arguments, in_context)
     off = predicted.mean_s - examples.targets
     runs = [episode.number // per_run for episode in finished]
-    mae, ci = _mean_over_runs(np.abs(off), runs, np.random.default_rng(seed))
+    mae, ci = _mean_over_runs(np.abs(off), runs, seed)
     mean = float(examples.targets.mean())
     return {
         "training_episodes": durations[path].card["episodes"]["finished"],
@@ -113,13 +114,11 @@ def duration_columns(
     }
 
 
-def _mean_over_runs(values: Array, runs: Sequence[int], rng: np.random.Generator) -> tuple[float, tuple[float, float]]:
+def _mean_over_runs(values: Array, runs: Sequence[int], seed: int) -> tuple[float, tuple[float, float]]:
     """Mean of one value an episode, shape (n,), and its 95 % interval by a bootstrap over runs."""
     _, run = np.unique(runs, return_inverse=True)
-    sums, counts = np.bincount(run, values), np.bincount(run)
-    drawn = rng.integers(0, len(sums), (scores.BOOTSTRAPS, len(sums)))
-    low, high = np.quantile(sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1), [0.025, 0.975])
-    return float(values.mean()), (float(low), float(high))
+    sums, counts = (np.bincount(run, some).astype(np.float64) for some in (values, np.ones(len(values))))
+    return float(values.mean()), ratio_interval(sums, counts, seed)
 
 
 def _failures(model: OnnxSuccess, data: DataSet) -> Row:

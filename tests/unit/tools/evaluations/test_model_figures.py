@@ -85,21 +85,31 @@ def test_each_episode_is_judged_by_the_interval_that_the_executive_had():
     assert duration_columns({"go/duration": Wide(0.5)}, "go/duration", data, 1)["coverage_pct"] == 0
 
 
-def test_tasks_without_noise_leave_a_ratio_to_the_floor():
-    off_s, floor_s = np.full(4, 0.1), np.array([0.0, 0.0, 0.0, 0.1])  # a third of the draws have no noise at all
-    ratio, (low, high) = floors._ratio(off_s, floor_s, np.random.default_rng(1))
-    assert ratio == pytest.approx(4.0)
-    assert 1.0 <= low <= high < np.inf
-
-
 def test_a_ratio_is_known_as_soon_as_some_task_has_noise(monkeypatch):
-    episodes = tuple(Episode(number, np.zeros(1), np.zeros((2, 1)), 0.1, True, "") for number in range(4))
+    """In a third of the resamples no task has any."""
+    episodes = tuple(Episode(number, np.zeros(1), np.zeros((2, 1)), 0.1, True, "") for number in range(12))
     data = DataSet({"arguments": []}, episodes, "")
-    row = {"predicted_s": np.full(4, 0.3), "observed_s": np.full(4, 0.1)}
-    for floor_s, expected in (([0.0, 0.0, 0.0, 0.1], 8.0), ([0.0] * 4, None)):
-        monkeypatch.setattr(floors, "noise_floor", lambda *_, floor_s=floor_s: (np.array(floor_s), np.ones(4)))
-        ratio = floors.floor_columns(row, data, ("r", "a", 1, 1)).get("over_floor")
-        assert ratio == (expected and pytest.approx(expected))
+    row = {"predicted_s": np.full(12, 0.3), "observed_s": np.full(12, 0.1)}
+    for floor_s, expected in (([0.0] * 11 + [0.3], 8.0), ([0.0] * 12, None)):
+        monkeypatch.setattr(floors, "noise_floor", lambda *_, floor_s=floor_s: (np.array(floor_s), np.ones(12)))
+        found = floors.floor_columns(row, data, ("r", "a", 1, 1))
+        assert found.get("over_floor") == (expected and pytest.approx(expected))
+        low, high = found.get("over_floor_ci95", (1.0, 1.0))
+        assert 1.0 <= low <= high < np.inf
+
+
+@pytest.mark.parametrize(("count", "known"), [(9, False), (10, True)])
+def test_errors_of_a_few_runs_have_no_interval(monkeypatch, count, known):
+    """One run of a rare action had one without width, and the bootstrap of a few holds too seldom what it promises."""
+    seconds = 3.1 + 0.1 * np.arange(count)
+    episodes = tuple(Episode(k, np.zeros(8), np.zeros((2, 8)), float(s), True, "") for k, s in enumerate(seconds))
+    data = DataSet({"arguments": []}, episodes, "")
+    row = duration_columns({"go/duration": Wide(0.5)}, "go/duration", data, 1)
+    assert np.isfinite(row["mae_ci95"]).all() == known
+    monkeypatch.setattr(floors, "noise_floor", lambda *_: (0.1 * seconds, np.ones(count)))
+    over = floors.floor_columns(row, data, ("r", "a", 1, 1))
+    assert over["over_floor"] > 0
+    assert np.isfinite(over["over_floor_ci95"]).all() == known
 
 
 class Sure:
@@ -152,7 +162,7 @@ def test_an_action_that_never_finishes_is_named(monkeypatch, capsys, tmp_path, w
 
 
 def test_episodes_of_one_run_count_as_one_unit_of_the_errors_interval():
-    ticks, durations_s = np.zeros((1, 8)), (3.1, 3.3, 3.5, 3.9)  # errors of four runs
+    ticks, durations_s = np.zeros((1, 8)), (3.1, 3.3, 3.5, 3.9) * 3  # errors of twelve runs
     once = [Episode(100 * run, ticks[0], ticks, s, True, "") for run, s in enumerate(durations_s)]
     often = [replace(each, number=each.number + k) for each in once for k in range(25)]
     models = {"go/duration": Wide(0.5)}
