@@ -182,8 +182,9 @@ def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[
     task = Task(settings.domain, settings.scenario, zoo=str(making.zoo))
     seeds = range(settings.seed, settings.seed + settings.starts)
     runs = run_all(task, (GREEDY, REFINED), seeds, settings.jobs, settings.store, title)
-    greedy_s, refined_s = paired(runs[GREEDY.name], runs[REFINED.name])
-    failed = {"failed_pct": 100 * (1 - len(greedy_s) / settings.starts), **_errors(settings, making.zoo)}
+    times_s = np.array(paired(runs[GREEDY.name], runs[REFINED.name]))
+    failed = {"failed_pct": 100 * (1 - times_s.shape[1] / settings.starts), **_errors(settings, making.zoo)}
+    greedy_s, refined_s = times_s[:, np.isfinite(times_s).all(axis=0)]  # without starts at which the goal holds
     if len(greedy_s) < 2:  # models of few episodes may hardly ever reach the goal: no gain, and no end of all curves
         return failed
     gain = compare(greedy_s, refined_s)

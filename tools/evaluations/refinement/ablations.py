@@ -16,7 +16,15 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
-from tailor.tools.evaluations.paired_comparison import compare, compare_means, compare_shares, p_shown, share_interval
+from tailor.tools.evaluations.paired_comparison import (
+    compare,
+    compare_means,
+    compare_shares,
+    is_longer,
+    p_shown,
+    share_interval,
+)
+from tailor.tools.evaluations.refinement.paired_outcomes import is_timed
 from tailor.tools.evaluations.refinement.replicas import Recipe, replica
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
@@ -82,13 +90,14 @@ def row(name: str, judged: Judged) -> dict[str, Any]:
       UsageError: Fewer than two starts from which all achieved the goal.
     """
     seeds = sorted(judged.runs)
-    reached = [s for s in seeds if all(some[s].achieved for some in (judged.greedy, judged.default, judged.runs))]
+    reached = [s for s in seeds if all(is_timed(some[s]) for some in (judged.greedy, judged.default, judged.runs))]
     greedy_s, default_s, these_s = (
         np.array([some[seed].duration_s for seed in reached]) for some in (judged.greedy, judged.default, judged.runs)
     )
     times = compare(greedy_s, these_s)
     more = compare_means(100 * (1 - default_s / greedy_s), 100 * (1 - these_s / greedy_s))
-    slower = compare_shares(default_s > greedy_s, these_s > greedy_s)
+    longer = is_longer(these_s, greedy_s)
+    slower = compare_shares(is_longer(default_s, greedy_s), longer)
     return {
         "setting": name,
         "n": times.n,
@@ -100,7 +109,7 @@ def row(name: str, judged: Judged) -> dict[str, Any]:
         "improvement_more_ci95": more.ci95,
         "improvement_more_p": p_shown(more.p_value),
         "slower_pct": slower.second,
-        "slower_ci95": share_interval(int(np.sum(these_s > greedy_s)), times.n),
+        "slower_ci95": share_interval(int(np.sum(longer)), times.n),
         "slower_more_ci95": slower.ci95,
         "slower_more_p": p_shown(slower.p_value),
         "lost_s": float(np.maximum(these_s - greedy_s, 0.0).mean()),

@@ -34,15 +34,15 @@ MAX_MORE_POINTS = 0.5  # of failures or contacts, that count as no more
 def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
     """Columns of a row.
 
-    Durations, arrivals and energy are of the pairs in which both achieved the goal; failures, contacts and costs of
-    this robot alone are of all. Over fewer than MIN_UNITS scenarios there are neither intervals nor p-values. Where
-    fewer than two units are left to compare, durations are NaN: that nearly all fail is a result, too.
+    Durations, arrivals and energy are of the pairs in which both achieved the goal by acting; failures, contacts and
+    costs of this robot alone are of all. Over fewer than MIN_UNITS scenarios there are neither intervals nor p-values.
+    Where fewer than two units are left to compare, durations are NaN: that nearly all fail is a result, too.
 
     Args:
       pairs: Outcomes by start.
       unit: "start", or "scenario": the starts of a scenario are one unit.
     """
-    kept = {start: pair for start, pair in pairs.items() if pair[0].achieved and pair[1].achieved}
+    kept = {start: pair for start, pair in pairs.items() if all(map(is_timed, pair))}
     units = None if unit == "start" else [scenario for scenario, _ in kept]
     every = None if unit == "start" else [scenario for scenario, _ in pairs]
     both = list(kept.values())
@@ -55,7 +55,7 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         "mean_refined_s": times.mean_s,
         **times.verdict,
         **_of_total(both, units),
-        "failed": len(pairs) - len(kept),
+        "failed": sum(not (first.achieved and second.achieved) for first, second in pairs.values()),
         **_shares("failures_pct", pairs.values(), every, lambda outcome: not outcome.achieved),
         **_shares("contacts_pct", pairs.values(), every, lambda outcome: outcome.costs.contacts > 0),
         **_means("energy_j", both, units, lambda outcome: outcome.costs.energy_j),
@@ -65,6 +65,11 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         "bias_refined_s": bias_s(pair[1] for pair in both),
     }
     return row if unit == "start" or times.units >= MIN_UNITS else without_intervals(row)
+
+
+def is_timed(outcome: Outcome) -> bool:
+    """Whether a run achieved its goal by acting: where the goal held at the start, no action has a duration."""
+    return outcome.achieved and math.isfinite(outcome.duration_s)
 
 
 def _times(pairs: Sequence[Pair], units: Units | None) -> Comparison:

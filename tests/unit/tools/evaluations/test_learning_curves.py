@@ -76,6 +76,20 @@ def test_a_set_whose_models_hardly_ever_reach_the_goal_has_no_gain_and_ends_no_c
     assert (many["failed_pct"], many["mean_greedy_s"]) == (25.0, 10.0)
 
 
+def test_a_start_at_which_the_goal_holds_is_no_failure_and_has_no_duration(monkeypatch, tmp_path) -> None:
+    def run_all(task, variants, seeds, *_):
+        return {
+            v.name: {s: SimpleNamespace(achieved=True, duration_s=10.0 - k if s else float("nan")) for s in seeds}
+            for k, v in enumerate(variants)
+        }
+
+    monkeypatch.setattr(learning_curves, "run_all", run_all)
+    monkeypatch.setattr(learning_curves, "_errors", lambda *_: {})
+    settings = SimpleNamespace(domain="soccer", scenario="aligned", seed=0, starts=4, jobs=1, store=tmp_path)
+    found = learning_curves._measured(SimpleNamespace(zoo=tmp_path), "", settings)
+    assert (found["improvement_pct"], found["failed_pct"]) == (pytest.approx(10.0), 0.0)
+
+
 def test_a_domain_must_be_named(capsys) -> None:
     assert main(["evaluate", "learning-curves"]) == 2
     assert "expected --domain NAME" in capsys.readouterr().err
