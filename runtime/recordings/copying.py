@@ -10,6 +10,7 @@ from typing import Any
 from mcap import records as r
 from mcap.writer import CompressionType, Writer
 
+from tailor.runtime.recordings.mcap.declared import Declared
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.runtime.recordings.mcap.writer import CHUNK_BYTES
 from tailor.runtime.recordings.new_file import new_file
@@ -30,36 +31,50 @@ class CopyResult:
 class _Copy:
     """Renumbers schemas and channels, and writes only those that have messages."""
 
-    def __init__(self, writer: Any) -> None:
-        self.writer = writer
-        self.schemas: dict[int, Any] = {}
-        self.channels: dict[int, Any] = {}
+    def __init__(self, writer: Any, declared: Declared) -> None:
+        self.writer, self.declared = writer, declared
         self._new_schemas: dict[tuple[str, str, bytes], int] = {}
-        self._new_channels: dict[tuple[int, str, int], int] = {}
+        self._new_channels: dict[tuple[int, str, str, int, tuple[tuple[str, str], ...]], int] = {}
+        self._copies: dict[int, int] = {}  # number of a channel in force -> that of its copy
+
+    def declare(self, record: Any) -> None:
+        """Note a schema or a channel; a file of several recordings gives their numbers to others."""
+        if not self.declared.add(record):
+            return
+        if isinstance(record, r.Schema):
+            self._copies.clear()
+        else:
+            self._copies.pop(record.id, None)
 
     def origin(self, record: Any) -> tuple[str, str] | None:
         """Key and ROS type of a message; None if the record of its channel is lost."""
-        channel = self.channels.get(record.channel_id)
+        channel = self.declared.channels.get(record.channel_id)
         if channel is None:
             return None
-        schema = self.schemas.get(channel.schema_id)
+        schema = self.declared.schemas.get(channel.schema_id)
         return channel.metadata.get("key") or channel.topic.strip("/"), "" if schema is None else schema.name
 
     def write(self, record: Any) -> bool:
         """Copy one message; False if the new file has no room for its channel."""
-        channel = self.channels[record.channel_id]
-        identity = (channel.id, channel.topic, channel.schema_id)
+        copied = self._copies.get(record.channel_id)
+        if copied is None:
+            copied = self._channel(self.declared.channels[record.channel_id])
+            if copied is None:
+                return False
+            self._copies[record.channel_id] = copied
+        self.writer.add_message(copied, record.log_time, record.data, record.publish_time, record.sequence)
+        return True
+
+    def _channel(self, channel: Any) -> int | None:
+        """Number of the copy of a channel; None if the new file has no room for it."""
+        schema = self._schema(self.declared.schemas.get(channel.schema_id))
+        identity = (channel.id, channel.topic, channel.message_encoding, schema, tuple(channel.metadata.items()))
         if identity not in self._new_channels:
             if len(self._new_channels) == MAX_CHANNELS:
-                return False
-            schema = self._schema(self.schemas.get(channel.schema_id))
-            self._new_channels[identity] = self.writer.register_channel(
-                channel.topic, channel.message_encoding, schema, channel.metadata
-            )
-        self.writer.add_message(
-            self._new_channels[identity], record.log_time, record.data, record.publish_time, record.sequence
-        )
-        return True
+                return None
+            new = self.writer.register_channel(channel.topic, channel.message_encoding, schema, channel.metadata)
+            self._new_channels[identity] = new
+        return self._new_channels[identity]
 
     def _schema(self, schema: Any) -> int:
         if schema is None:
@@ -87,7 +102,7 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
     with new_file(target), target.open("xb") as file:
         writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         writer.start(profile="ros2", library="tailor")
-        _copy_records(source, _Copy(writer), keep, copied)
+        _copy_records(source, _Copy(writer, Declared(source)), keep, copied)
         writer.add_metadata("copy", {"of": utf8_name(source), "damage": copied.damage.text(), **note})
         writer.finish()
     return copied
@@ -100,10 +115,8 @@ def utf8_name(path: Path) -> str:
 
 def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) -> None:
     for record in scan(source, copied.damage):
-        if isinstance(record, r.Schema):
-            copy_.schemas[record.id] = record
-        elif isinstance(record, r.Channel):
-            copy_.channels[record.id] = record
+        if isinstance(record, r.Schema | r.Channel):
+            copy_.declare(record)
         elif isinstance(record, r.Metadata):
             copy_.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, r.Message):

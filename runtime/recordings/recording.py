@@ -11,6 +11,7 @@ from typing import Any
 from mcap import records as r
 
 from tailor.runtime.recordings.mcap.channel_table import Declaration
+from tailor.runtime.recordings.mcap.declared import Declared
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
@@ -45,7 +46,7 @@ class Recording:
 
     def messages(self) -> Iterator[Recorded]:
         """All messages in file order, which is the order of reception; damaged parts are skipped, see `damage`."""
-        schemas: dict[int, Any] = {0: None}
+        declared = Declared(self.path)
         channels: dict[int, tuple[str, str, str, Declaration]] = {}
         self.damage = DamageReport()
         for record in scan(self.path, self.damage):
@@ -53,15 +54,16 @@ class Recording:
                 if record.channel_id in channels:
                     yield _recorded(record, *channels[record.channel_id])
             elif isinstance(record, r.Schema):
-                schemas[record.id] = record
+                declared.add(record)
             elif isinstance(record, r.Channel):
-                schema = schemas.get(record.schema_id)
+                declared.add(record)
+                schema = declared.schemas.get(record.schema_id)
                 name = "" if schema is None else schema.name
                 self._check_schema(record, schema)
                 key = record.metadata.get("key") or record.topic.strip("/")
                 sender = record.metadata.get("sender", "")
-                declared = _declaration(record, schema)
-                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "", declared)
+                declaration = _declaration(record, schema)
+                channels[record.id] = (key, name, sender if _SENDER.fullmatch(sender) else "", declaration)
 
     def decoded(self, kinds: Collection[type] | None = None) -> Iterator[tuple[Recorded, Message | Rejected]]:
         """Messages of these types, by default of all that Tailor has, with their values; others are skipped."""

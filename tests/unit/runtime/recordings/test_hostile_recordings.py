@@ -11,6 +11,7 @@ from mcap.writer import Writer
 from tailor.executive.composition import rebuild_context
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.recordings import copying
+from tailor.runtime.recordings.mcap import declared
 from tailor.runtime.recordings.mcap.scan import MAGIC
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection
@@ -26,6 +27,11 @@ from tailor.tools.recordings.survey import survey
 from tests.support.bus_system import bus_system
 from tests.support.cpu_time import min_cpu_s
 from tests.unit.runtime.recordings.test_mcap_writer import chunk_bounds, write_tape
+
+
+def copied(path):
+    return copying.copy(path, path.with_name("new.mcap"), lambda *_: True, {})
+
 
 NOTHING = Selection(("no/such/key",))
 GOLDEN = Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap"
@@ -112,6 +118,26 @@ def test_a_copy_of_more_channels_than_a_file_may_have_leaves_messages_out(tmp_pa
     copied = copying.copy(tmp_path / "a.mcap", tmp_path / "b.mcap", lambda *_: True, {})
     assert (copied.kept, copied.left_out) == (2, 7)
     assert len(list(open_recording(tmp_path / "b.mcap").messages())) == 2
+
+
+@pytest.mark.promise("P40")
+@pytest.mark.parametrize("read", [lambda path: list(open_recording(path).messages()), copied])
+@pytest.mark.parametrize("kind", ["schemas", "channels"])
+def test_declarations_that_unpack_to_more_than_fits_into_memory_are_refused(tmp_path, monkeypatch, kind, read):
+    """A file of 84 kB unpacked to 1.8 GB of schemas, or of channels' metadata, all of which were kept."""
+    monkeypatch.setattr(declared, "MAX_BYTES", 100_000)
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, repeat_schemas=False, repeat_channels=False)
+        writer.start(profile="ros2", library="other")
+        for n in range(200):
+            data, entries = (b"x" * 1000, {}) if kind == "schemas" else (b"", {"x": "x" * 1000})
+            schema = writer.register_schema(f"a/msg/B{n}", "ros2msg", data)
+            writer.add_message(writer.register_channel(f"t{n}", "cdr", schema, entries), 10, b"", 10)
+        writer.finish()
+    with pytest.raises(UsageError, match="more than 100000 bytes of schemas and channels"):
+        read(path)
+    assert not path.with_name("new.mcap").exists()
 
 
 def test_the_report_of_a_file_of_nothing_but_damage_stays_small(tmp_path):
