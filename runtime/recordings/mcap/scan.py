@@ -23,16 +23,16 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from tailor.runtime.recordings.mcap.chunk import records_of
+from tailor.runtime.recordings.mcap.file_end import MAGIC, FileEnd, read_end
 from tailor.schemas.errors import UsageError
 
-MAGIC = b"\x89MCAP0\r\n"
 MAX_CHUNK_BYTES = 64_000_000  # chunks of ros2 bag have 0.8 MB, the largest of other tools a few dozen
 MAX_RECORD_BYTES = 128_000_000
 WINDOW_BYTES = 1_000_000
+DATA_END_BYTES = 4  # a checksum
 CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
-_CHUNK = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})", re.DOTALL)
+_START = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})|" + re.escape(MAGIC), re.DOTALL)
 _HEAD = struct.Struct("<BQ")  # opcode, length
-_FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its offsets, checksum
 _KINDS: dict[int, Any] = {
     Opcode.HEADER: r.Header,
     Opcode.SCHEMA: r.Schema,
@@ -90,66 +90,77 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
             size = path.stat().st_size
             if file.read(len(MAGIC)) != MAGIC:
                 raise UsageError(f"{path}: not an MCAP file")
-            yield from _summary(file, size)
+            end = read_end(file, size)
+            for opcode, data in end.declarations(file):
+                yield from _one(_KINDS[opcode].read, data, DamageReport())
             file.seek(len(MAGIC))
-            yield from _records(file, size, damage, with_chunks)
+            yield from _records(file, size, damage, with_chunks, end)
+            damage.complete = end.start >= 0
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
 
 
-def _summary(file: IO[bytes], size: int) -> Iterator[Any]:
-    """Schemas and channels from the index, if there is one: the chunk that declares them may be damaged."""
-    file.seek(max(size - _FOOTER.size - len(MAGIC), 0))
-    end = file.read()
-    if len(end) < _FOOTER.size or not end.endswith(MAGIC):
-        return
-    opcode, _, start, _, _ = _FOOTER.unpack(end[: _FOOTER.size])
-    if opcode != Opcode.FOOTER or not 0 < start < size:
-        return
-    file.seek(start)
-    while len(head := file.read(_HEAD.size)) == _HEAD.size:
-        opcode, length = _HEAD.unpack(head)
-        if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or length > size - file.tell():
-            return
-        yield from _one(_KINDS[opcode].read, file.read(length), DamageReport())
-
-
-def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool) -> Iterator[Any]:
+def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool, end: FileEnd) -> Iterator[Any]:
     while True:
         start = file.tell()
         head = file.read(_HEAD.size)
         if len(head) < _HEAD.size:
-            damage.add_loss(len(head), "the file ends early")
+            damage.add_loss(len(head), "its index or footer is damaged" if head == MAGIC else "the file ends early")
             return
         opcode, length = _HEAD.unpack(head)
-        if opcode == 0 or length > min(size - file.tell(), MAX_RECORD_BYTES):
-            next_start = _next_chunk(file, start + 1, size)
+        if head.startswith(MAGIC):
+            damage.add_loss(0, f"another recording begins at byte {_skip_magic(file, start)}")
+        elif not _is_record(opcode, length, size - file.tell()):
+            next_start = _next_start(file, start + 1, size)
             if next_start == size:
                 damage.add_loss(size - start, "the file ends inside a record")
                 return
             damage.add_loss(next_start - start, f"bytes {start} to {next_start} are not a record")
             file.seek(next_start)
-            continue
-        if opcode == Opcode.DATA_END:
-            damage.complete = _ends_well(file, size)
-            return
-        if opcode == Opcode.CHUNK and with_chunks:
-            yield from _chunk(file.read(length), damage)
-        elif opcode == Opcode.MESSAGE and with_chunks:
-            yield from _one(partial(r.Message.read, length=length), file.read(length), damage)
-        elif opcode in _KINDS and opcode != Opcode.CHUNK:
-            yield from _one(_KINDS[opcode].read, file.read(length), damage)
+        elif opcode == Opcode.DATA_END:
+            if end.intact and file.tell() + length == end.start:
+                return
+            file.seek(_next_start(file, start + 1, size))  # past an index that is damaged, or of another recording
         else:
-            file.seek(length, 1)
+            yield from _record(file, opcode, length, damage, with_chunks)
 
 
-def _next_chunk(file: IO[bytes], start: int, size: int) -> int:
-    """Offset of the next plausible chunk from `start` on; `size` if there is none."""
+def _is_record(opcode: int, length: int, left: int) -> bool:
+    """Whether the head of a record, with so many bytes left behind it, can be one."""
+    possible = opcode > 0 and length <= min(left, MAX_RECORD_BYTES)
+    return possible and (opcode != Opcode.DATA_END or length == DATA_END_BYTES)
+
+
+def _record(file: IO[bytes], opcode: int, length: int, damage: DamageReport, with_chunks: bool) -> Iterator[Any]:
+    if opcode == Opcode.CHUNK and with_chunks:
+        yield from _chunk(file.read(length), damage)
+    elif opcode == Opcode.MESSAGE and with_chunks:
+        yield from _one(partial(r.Message.read, length=length), file.read(length), damage)
+    elif opcode in _KINDS and opcode != Opcode.CHUNK:
+        yield from _one(_KINDS[opcode].read, file.read(length), damage)
+    else:
+        file.seek(length, 1)
+
+
+def _skip_magic(file: IO[bytes], start: int) -> int:
+    """Go on behind the magic bytes at `start`, of which a file has some at its end, too; where the last ones are."""
+    at = start
+    file.seek(at)
+    while file.read(len(MAGIC)) == MAGIC:
+        at += len(MAGIC)
+    file.seek(at)
+    return at - len(MAGIC)
+
+
+def _next_start(file: IO[bytes], start: int, size: int) -> int:
+    """Offset of the next plausible chunk, or of magic bytes, from `start` on; `size` if there is none."""
     file.seek(start)
     window, at = b"", start  # content of the file from `at` on
     while block := file.read(WINDOW_BYTES):
         window += block
-        for match in _CHUNK.finditer(window):
+        for match in _START.finditer(window):
+            if match[0] == MAGIC:
+                return at + match.start()
             (length,) = struct.unpack_from("<Q", window, match.start() + 1)
             if length <= min(size - at - match.start() - _HEAD.size, MAX_RECORD_BYTES):
                 return at + match.start()
@@ -173,7 +184,7 @@ def _chunk(data: bytes, damage: DamageReport) -> Iterator[Any]:
         inside = records_of(_unpacked(chunk), chunk.uncompressed_crc)
     except DAMAGE as error:
         damage.damaged_chunks += 1
-        damage.add_loss(len(data), f"a chunk is damaged: {error or type(error).__name__}")
+        damage.add_loss(len(data), f"a chunk is damaged: {str(error) or type(error).__name__}")
         return
     damage.chunks += 1
     yield from inside
@@ -195,8 +206,3 @@ def _unpacked(chunk: Any) -> bytes:
     if len(plain) != declared:
         raise ValueError(f"declared size of {declared} bytes, holds {len(plain)}")
     return bytes(plain)
-
-
-def _ends_well(file: IO[bytes], size: int) -> bool:
-    file.seek(size - len(MAGIC))
-    return file.read() == MAGIC

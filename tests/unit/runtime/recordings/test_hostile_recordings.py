@@ -140,6 +140,22 @@ def test_declarations_that_unpack_to_more_than_fits_into_memory_are_refused(tmp_
     assert not path.with_name("new.mcap").exists()
 
 
+def test_declarations_that_each_chunk_repeats_count_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(declared, "MAX_BYTES", 10_000)
+    path = write_tape(tmp_path / "a.mcap", count=50, chunks=50)
+    path.write_bytes(path.read_bytes() * 20)
+    assert len(list(open_recording(path).messages())) == 1000
+
+
+def test_the_reason_of_a_damaged_chunk_is_never_empty(tmp_path):
+    """It was, where an error has no text: mcap's at the end of the data."""
+    path = tmp_path / "a.mcap"
+    path.write_bytes(MAGIC + struct.pack("<BQ", 0x06, 40) + bytes(28) + struct.pack("<I", 9) + bytes(8))
+    recording = open_recording(path)
+    assert list(recording.messages()) == []
+    assert "a chunk is damaged: EndOfFile" in recording.damage.text()
+
+
 def test_the_report_of_a_file_of_nothing_but_damage_stays_small(tmp_path):
     with (tmp_path / "bad.mcap").open("wb") as file:
         file.write(MAGIC + struct.pack("<BQ2s", 0x03, 2, b"xx") * 10_000)
