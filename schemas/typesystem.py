@@ -6,7 +6,7 @@ standard.py and own.py convert the fields.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from tailor.schemas.messages import Message
@@ -19,6 +19,7 @@ __all__ = [
     "definition",
     "from_bytes",
     "hash_of",
+    "hash_of_definition",
     "message_types",
     "own_types",
     "ros_class",
@@ -30,6 +31,7 @@ __all__ = [
 ]
 # As ROS 2 Kilted has it. Jazzy writes `char` for uint8; rosbags gives that another hash than ROS 2 does.
 _EVENT_INFO = "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number"
+MAX_DEFINITION_CHARS = 30_000  # ten times MarkerArray's with its comments; the parser takes 0.3 s for as many line ends
 MAX_ELEMENTS = 65536  # in one sequence; the longest legal message has fewer
 
 
@@ -91,6 +93,25 @@ def hash_of(name: str) -> str:
       KeyError: The type is unknown.
     """
     digest: str = typestore().hash_rihs01(name)
+    return digest
+
+
+@lru_cache(maxsize=256)  # a file has as many channels of a type as senders
+def hash_of_definition(name: str, text: str) -> str:
+    """The RIHS01 hash of a type by its `ros2msg` text, wherever that is from; empty if it is none that can be read.
+
+    Constants, comments, the order of nested types and the way in which their names are written do not count.
+    """
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    if len(text) > MAX_DEFINITION_CHARS:
+        return ""
+    try:
+        store = get_typestore(Stores.EMPTY)
+        store.register(get_types_from_msg(text, name))
+        digest: str = store.hash_rihs01(name)
+    except Exception:
+        return ""
     return digest
 
 

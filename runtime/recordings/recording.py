@@ -16,7 +16,7 @@ from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message
-from tailor.schemas.typesystem import definition, type_hash, type_of
+from tailor.schemas.typesystem import definition, hash_of_definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
 LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
@@ -84,7 +84,10 @@ class Recording:
             return
         recorded, today = channel.metadata.get("type_hash"), type_hash(kind)
         if recorded is None:
-            recorded, today = _normalized(schema.data.decode(errors="replace")), _normalized(definition(kind))
+            text = schema.data.decode(errors="replace")
+            if _normalized(text) == _normalized(definition(kind)):
+                return
+            recorded = hash_of_definition(schema.name, text)
         if recorded != today:
             raise UsageError(
                 f"{self.path}: {schema.name} has changed since this was recorded, expected {type_hash(kind)[:20]}…"
