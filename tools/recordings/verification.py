@@ -15,6 +15,7 @@ from tailor.runtime.gc_freeze import gc_frozen
 from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind, same_products
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.core_source import core_source
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
 from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
 from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
@@ -142,11 +143,11 @@ def _in_time(runs: RecordedRuns, run: RecordedRun, context: Context) -> Iterator
 def verdict_text(verdict: Verdict) -> str:
     """The verdict in one line; further lines on an early end, platforms and ignored messages if there are any."""
     summary = f"{verdict.compared} messages of {verdict.ticks} ticks ({verdict.times_real_time:.0f} times real time)"
-    left_out = f"\n  {verdict.left_out}" if verdict.left_out else ""
-    ends = f"\n  not verified to the end: {verdict.ends}" if verdict.ends else ""
-    machines = f"\n  recorded on {verdict.machines}" if verdict.machines else ""
+    left_out = f"\n  {plain(verdict.left_out)}" if verdict.left_out else ""
+    ends = f"\n  not verified to the end: {plain(verdict.ends)}" if verdict.ends else ""
+    machines = f"\n  recorded on {plain(verdict.machines)}" if verdict.machines else ""
     if verdict.difference is not None:
-        return f"different: {verdict.difference}\n  {verdict.source}{machines}{left_out}"
+        return f"different: {plain(str(verdict.difference))}\n  {verdict.source}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
         within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"

@@ -265,6 +265,29 @@ def test_a_run_compares_equal_to_itself(tmp_path, capsys):
     assert comparison["commands"] == {"seconds": 1.7, "first_s": None, "rms": 0.0, "max": 0.0}
 
 
+def test_a_comparison_escapes_the_result_of_a_stranger(tmp_path, capsys):
+    """It was printed as it is: one recording could clear the screen, or write lines of its own."""
+    script = Script(tmp_path / "a.mcap")
+    status = replace(example(ExecStatus), tick=1, mode="IDLE", goal="(g)", result="x\ncommands: equal\x1b[2J")
+    script.say(100, "exec/status", status)
+    script.say(105, "exec/tick", replace(example(TickReport), tick=1))
+    path = script.close()
+    assert main(["compare", path, path]) == 0
+    assert "results: x\\ncommands: equal\\x1b[2J" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["info", "cut", "recover"])
+def test_the_name_of_a_recording_controls_no_terminal(command, tmp_path, capsys):
+    path = tmp_path / "a\x1b[2J\u202e.mcap"
+    a_run(path)
+    if command == "recover":
+        path.write_bytes(path.read_bytes()[:-50])
+    main([command, str(path)])
+    out = capsys.readouterr().out
+    assert "a\\x1b[2J\\u202e" in out
+    assert "\x1b" not in out
+
+
 def test_different_runs_are_distinguished(tmp_path, capsys):
     first, second = a_run(tmp_path / "a.mcap"), a_run(tmp_path / "b.mcap", speed=0.25, slower_ms=500)
     code, comparison = json_of(capsys, "compare", first, second)

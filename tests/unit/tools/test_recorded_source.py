@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,7 +12,9 @@ import pytest
 from tailor.schemas.installed import core_source as module
 from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.installed.source import ROOT
+from tailor.tools.recordings.differences import Difference
 from tailor.tools.recordings.recorded_source import UNSTATED, source_contrast, source_entry
+from tailor.tools.recordings.verification import Verdict, verdict_text
 
 TODAY = {"executive/core": "aa", "executive/domains/soccer": "bb"}
 
@@ -56,6 +59,17 @@ def test_a_hostile_source_controls_no_terminal():
     hostile = "x\nequal: 1 messages\x1b[2J"
     text = source_contrast({"version": hostile, "folders": {**TODAY, hostile: "aa"}}, TODAY, same_kind=True)
     assert text.isprintable()
+
+
+def test_a_hostile_recording_writes_no_verdict_of_its_own():
+    """Recorded values were printed as they are: a line end in one of them could add a line "equal: …"."""
+    forged = "x\nequal: 1 messages\x1b[2J"
+    difference = Difference(1, "exec/status", "goal", forged, forged)
+    verdict = Verdict("ab" * 16, 1, 1, 0, difference, forged, forged, 1.0, forged)
+    for each in (verdict, replace(verdict, difference=None), replace(verdict, difference=None, rounded=1)):
+        first, *others = verdict_text(each).splitlines()
+        assert not any(line.startswith("equal") for line in others)
+        assert all(line.isprintable() for line in (first, *others))
 
 
 @pytest.fixture

@@ -87,7 +87,7 @@ def _show(a: ComparedRun, b: ComparedRun, comparison: dict[str, Any]) -> None:
     total = f"{a.total_s:.2f} s against {b.total_s:.2f} s"
     if a.total_s > 0:
         total += f" ({b.total_s / a.total_s - 1:+.1%})"
-    console.print(f"durations: {total}; results: {a.result or 'none'}, {b.result or 'none'}")
+    console.print(f"durations: {total}; results: {plain(a.result) or 'none'}, {plain(b.result) or 'none'}")
     apart = comparison["commands"]
     for line in _unlike(a, b):
         console.print(plain(line))

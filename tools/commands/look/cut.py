@@ -10,6 +10,7 @@ from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.plain_text import plain
 
 MAX_S = 1e10  # limit of the clock in the file
 
@@ -66,6 +67,6 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(found))
     else:
         if copied.damage.text():
-            print(f"{recording.path}: {copied.damage.text()}")
-        print(f"{target}: {copied.kept} messages of {copied.kept + copied.left_out}")
+            print(f"{plain(str(recording.path))}: {copied.damage.text()}")
+        print(f"{plain(str(target))}: {copied.kept} messages of {copied.kept + copied.left_out}")
     return 0 if copied.kept else 1

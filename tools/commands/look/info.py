@@ -111,7 +111,7 @@ def _show(summary: dict[str, Any]) -> None:
     console = table_console()
     size, since = summary["bytes"] / 1e6, f" from {summary['start']}" if summary["start"] else ""
     console.print(
-        f"{summary['file']}: {summary['messages']} messages, {summary['duration_s']:.1f} s{since}, {size:.2f} MB"
+        f"{plain(summary['file'])}: {summary['messages']} messages, {summary['duration_s']:.1f} s{since}, {size:.2f} MB"
     )
     if summary["damage"]:
         console.print(f"damaged: {summary['damage']}", style="red")

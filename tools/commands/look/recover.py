@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
+from tailor.tools.cli.plain_text import plain
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,9 +38,9 @@ def run(arguments: argparse.Namespace) -> int:
         "of_unknown_channels": copied.left_out,
     }
     rest = f"{copied.kept} messages recovered, {copied.left_out} of unknown channels skipped"
-    _print(arguments.json, found, f"{source}: {copied.damage.text()}\n{target}: {rest}")
+    _print(arguments.json, found, f"{source}: {copied.damage.text()}", f"{target}: {rest}")
     return 0 if copied.kept else 1
 
 
-def _print(as_json: bool, found: Mapping[str, object], text: str) -> None:
-    print(json.dumps(found) if as_json else text)
+def _print(as_json: bool, found: Mapping[str, object], *lines: str) -> None:
+    print(json.dumps(found) if as_json else "\n".join(map(plain, lines)))
