@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from tailor.executive.interfaces.domain import Domain
@@ -93,6 +94,11 @@ class Outcome:
     bound: tuple[tuple[str, str, float], ...]
     predicted_actions: tuple[tuple[str, bool, float], ...] = ()
     costs: Costs = NO_COSTS
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the goal was reached by acting: where it held at the start, no action has a duration."""
+        return self.achieved and math.isfinite(self.duration_s)
 
 
 def outcome_of(run: Run, domain: Domain, variant: str, seed: int) -> Outcome:

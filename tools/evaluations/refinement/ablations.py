@@ -24,7 +24,6 @@ from tailor.tools.evaluations.paired_comparison import (
     p_shown,
     share_interval,
 )
-from tailor.tools.evaluations.refinement.paired_outcomes import is_timed
 from tailor.tools.evaluations.refinement.replicas import Recipe, replica
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
@@ -90,7 +89,7 @@ def row(name: str, judged: Judged) -> dict[str, Any]:
       UsageError: Fewer than two starts from which all achieved the goal.
     """
     seeds = sorted(judged.runs)
-    reached = [s for s in seeds if all(is_timed(some[s]) for some in (judged.greedy, judged.default, judged.runs))]
+    reached = [s for s in seeds if all(some[s].is_timed for some in (judged.greedy, judged.default, judged.runs))]
     greedy_s, default_s, these_s = (
         np.array([some[seed].duration_s for seed in reached]) for some in (judged.greedy, judged.default, judged.runs)
     )

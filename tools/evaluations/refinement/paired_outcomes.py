@@ -42,7 +42,7 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
       pairs: Outcomes by start.
       unit: "start", or "scenario": the starts of a scenario are one unit.
     """
-    kept = {start: pair for start, pair in pairs.items() if all(map(is_timed, pair))}
+    kept = {start: pair for start, pair in pairs.items() if pair[0].is_timed and pair[1].is_timed}
     units = None if unit == "start" else [scenario for scenario, _ in kept]
     every = None if unit == "start" else [scenario for scenario, _ in pairs]
     both = list(kept.values())
@@ -65,11 +65,6 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         "bias_refined_s": bias_s(pair[1] for pair in both),
     }
     return row if unit == "start" or times.units >= MIN_UNITS else without_intervals(row)
-
-
-def is_timed(outcome: Outcome) -> bool:
-    """Whether a run achieved its goal by acting: where the goal held at the start, no action has a duration."""
-    return outcome.achieved and math.isfinite(outcome.duration_s)
 
 
 def _times(pairs: Sequence[Pair], units: Units | None) -> Comparison:

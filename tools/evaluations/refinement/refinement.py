@@ -16,7 +16,7 @@ from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import MIN_UNITS
 from tailor.tools.evaluations.refinement.failed_runs import failure_remarks
-from tailor.tools.evaluations.refinement.paired_outcomes import is_better, is_timed
+from tailor.tools.evaluations.refinement.paired_outcomes import is_better
 from tailor.tools.evaluations.refinement.refinement_rows import rows_of
 from tailor.tools.evaluations.refinement.replicas import Recipe, configure_replicas, over_models, replica
 from tailor.tools.evaluations.refinement.settings_flag import configure_settings, settings_from, settings_remark
@@ -106,7 +106,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
         failed = failed or list(failure_remarks(pairs))
         if arguments.report is not None and not number:
             path = arguments.report / f"{named.name}.png"
-            both = [pair for pair in pairs.values() if all(map(is_timed, pair))]
+            both = [pair for pair in pairs.values() if pair[0].is_timed and pair[1].is_timed]
             greedy_s, refined_s = ([pair[side].duration_s for pair in both] for side in (0, 1))
             plots["greedy and refined"] = draw_pairs(greedy_s, refined_s, path)
     few = [] if all("ci95" in row for row in rows) else [FEW_REMARK]
