@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sized
 from typing import TypeVar
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from tailor.tools.parallel.progress_lines import ProgressLines
 
@@ -24,9 +23,8 @@ def tracked(items: Iterable[Item], title: str, total: int | None = None) -> Iter
     if total is None and isinstance(items, Sized):
         total = len(items)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    console, lines = Console(stderr=True), ProgressLines()
-    with Progress(*columns, transient=True, console=console, disable=lines.on) as progress:
-        done = 0
+    lines, done = ProgressLines(), 0
+    with lines.bars(*columns, transient=True) as progress:
         lines.report(title, done, total)
         for done, item in enumerate(progress.track(items, total=total, description=title), 1):
             yield item

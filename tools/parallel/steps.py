@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TaskID, TextColumn, TimeRemainingColumn
 
 from tailor.tools.parallel.progress_lines import ProgressLines
 
@@ -46,7 +45,7 @@ def show(steps: Iterable[Step], quiet: bool, reached: dict[str, tuple[Step, Step
     """
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     lines = ProgressLines(quiet)
-    with Progress(*columns, console=Console(stderr=True), disable=quiet or lines.on) as progress:
+    with lines.bars(*columns) as progress:
         tasks: dict[str, TaskID] = {}
         for step in steps:
             first, _ = reached.get(step.title, (step, step))

@@ -7,8 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS
@@ -99,9 +98,8 @@ def run(arguments: argparse.Namespace) -> int:
 def _trained(request: TrainingRequest) -> list[dict[str, Any]]:
     """Rows of the trained models; a bar counts the actions."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    console = Console(stderr=True)
     lines = ProgressLines()
-    with Progress(*columns, console=console, transient=True, disable=lines.on) as progress:
+    with lines.bars(*columns, transient=True) as progress:
         bar = progress.add_task("reading data sets", total=None)
 
         def on_action(action: str, number: int, total: int) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
@@ -23,8 +23,7 @@ def gathered(spec: DataSetSpec, jobs: int, quiet: bool) -> dict[str, object]:
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
     lines, done = ProgressLines(quiet), spec.episodes - left
     lines.report(spec.action, done, spec.episodes)
-    hidden = quiet or lines.on
-    with Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True), disable=hidden) as progress:
+    with lines.bars(*columns, TimeRemainingColumn()) as progress:
         task = progress.add_task(spec.action, total=spec.episodes, completed=done, rate="")
         for count, sim_s, wall_s in random_episodes.gather(spec, random_episodes.missing_parts(spec), jobs):
             simulated, busy, done = simulated + sim_s, busy + wall_s, done + count
