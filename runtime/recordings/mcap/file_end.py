@@ -12,7 +12,7 @@ from mcap.opcode import Opcode
 
 MAGIC = b"\x89MCAP0\r\n"
 BLOCK_BYTES = 1_000_000  # of a checksum: the summary of a day has 200 MB
-_HEAD = struct.Struct("<BQ")  # opcode, length
+HEAD = struct.Struct("<BQ")  # opcode, length
 _FOOTER = struct.Struct("<BQQQI")  # opcode, length, start of the summary, start of its offsets, checksum
 _CRC_BYTES = 4
 
@@ -29,7 +29,7 @@ class FileEnd:
         """Schemas and channels of an intact summary: the chunk that declares them may be damaged."""
         file.seek(max(self.start, 0))
         while self.intact and file.tell() < self.footer:
-            opcode, length = _HEAD.unpack(file.read(_HEAD.size))
+            opcode, length = HEAD.unpack(file.read(HEAD.size))
             if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL) or length > self.footer - file.tell():
                 return
             yield opcode, file.read(length)
@@ -42,7 +42,7 @@ def read_end(file: IO[bytes], size: int) -> FileEnd:
         return FileEnd()
     file.seek(footer)
     opcode, length, start, _, crc = _FOOTER.unpack(file.read(_FOOTER.size))
-    if opcode != Opcode.FOOTER or length != _FOOTER.size - _HEAD.size or file.read() != MAGIC:
+    if opcode != Opcode.FOOTER or length != _FOOTER.size - HEAD.size or file.read() != MAGIC:
         return FileEnd()
     if not start:
         return FileEnd(footer, footer, True)

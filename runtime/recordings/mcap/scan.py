@@ -23,7 +23,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from tailor.runtime.recordings.mcap.chunk import records_of
-from tailor.runtime.recordings.mcap.file_end import MAGIC, FileEnd, read_end
+from tailor.runtime.recordings.mcap.file_end import HEAD, MAGIC, FileEnd, read_end
 from tailor.schemas.errors import UsageError
 
 MAX_CHUNK_BYTES = 64_000_000  # chunks of ros2 bag have 0.8 MB, the largest of other tools a few dozen
@@ -32,7 +32,6 @@ WINDOW_BYTES = 1_000_000
 DATA_END_BYTES = 4  # a checksum
 CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
 _START = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})|" + re.escape(MAGIC), re.DOTALL)
-_HEAD = struct.Struct("<BQ")  # opcode, length
 _KINDS: dict[int, Any] = {
     Opcode.HEADER: r.Header,
     Opcode.SCHEMA: r.Schema,
@@ -103,11 +102,11 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
 def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool, end: FileEnd) -> Iterator[Any]:
     while True:
         start = file.tell()
-        head = file.read(_HEAD.size)
-        if len(head) < _HEAD.size:
+        head = file.read(HEAD.size)
+        if len(head) < HEAD.size:
             damage.add_loss(len(head), "its index or footer is damaged" if head == MAGIC else "the file ends early")
             return
-        opcode, length = _HEAD.unpack(head)
+        opcode, length = HEAD.unpack(head)
         if head.startswith(MAGIC):
             damage.add_loss(0, f"another recording begins at byte {_skip_magic(file, start)}")
         elif not _is_record(opcode, length, size - file.tell()):
@@ -162,7 +161,7 @@ def _next_start(file: IO[bytes], start: int, size: int) -> int:
             if match[0] == MAGIC:
                 return at + match.start()
             (length,) = struct.unpack_from("<Q", window, match.start() + 1)
-            if length <= min(size - at - match.start() - _HEAD.size, MAX_RECORD_BYTES):
+            if length <= min(size - at - match.start() - HEAD.size, MAX_RECORD_BYTES):
                 return at + match.start()
         at += max(len(window) - CHUNK_HEAD_BYTES, 0)
         window = window[-CHUNK_HEAD_BYTES:]
