@@ -14,12 +14,13 @@ from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
+from tailor.runtime.bus.ros_action.server import GoalAction
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock
 from tailor.runtime.loop import Loop, Period
 from tailor.runtime.processes.external_planner import ExternalPlanner
 from tailor.runtime.processes.notify import SILENT, Notifier
-from tailor.schemas.messages import PlanRequest, Provenance, Sample, TickReport
+from tailor.schemas.messages import ExecStatus, PlanRequest, Provenance, Sample, TickReport
 from tailor.schemas.topics import reports
 
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
@@ -56,6 +57,7 @@ class Shell:
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
         self._goals = session.service_server("exec/goal")
+        self._action = GoalAction(session)
         topics = (*(outlet.topic for outlet in outlets_of(domain)), "self_arm", *reports())
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         external = context.settings.external
@@ -93,6 +95,7 @@ class Shell:
                 realtime.collect_garbage(self._state.tick)
         finally:
             self._planner.close()
+            self._action.close()
 
     def _tick_or_rest(self, period: Period, goal: str, stopping: bool) -> None:
         """One tick. If it raises, the robot brakes at once; the guard latches its stop, as no command follows."""
@@ -121,7 +124,7 @@ class Shell:
         So is one that may have waited while this process stood still: people were told that nobody responds. One that
         only drops the open goal moves nothing, so it counts.
         """
-        request, may_be_old = self._goals.poll(), self._stood_still(period)
+        request, may_be_old = self._goals.poll() or self._action.poll(), self._stood_still(period)
         if request is None:
             return first
         goal = request.text.strip() or self._context.problem.goal_text
@@ -163,6 +166,8 @@ class Shell:
             self._publishers[output.topic].publish(output.message)
             if isinstance(output.message, PlanRequest):
                 self._planner.request(output.message)
+            if isinstance(output.message, ExecStatus):
+                self._action.report(output.message)
 
     def _report(self, period: Period, inputs: Inputs, control_ns: int, checks: int) -> None:
         tick = self._state.tick

@@ -15,6 +15,7 @@ from tailor.schemas.packages.ros_names import ros_type
 from tailor.schemas.topics import TOPICS
 
 __all__ = [
+    "add_message",
     "add_service",
     "definition",
     "from_bytes",
@@ -113,6 +114,13 @@ def hash_of_definition(name: str, text: str) -> str:
     except Exception:
         return ""
     return digest
+
+
+def add_message(name: str, text: str) -> None:
+    """Register a message that no topic of the table carries, by its ROS name and its ROS 2 definition."""
+    from rosbags.typesys import get_types_from_msg
+
+    typestore().register(get_types_from_msg(text, name))
 
 
 def add_service(name: str, request: str, response: str) -> None:

@@ -82,38 +82,49 @@ def as_plain(raw: Raw, keys: KeyProfile) -> Raw | None:
     return replace(raw, key=key, encoding=raw.encoding if names_type else encoding_of(topic.type))
 
 
-def ros_request(query: Any) -> ServiceRequest | None:
-    """The request of `tailor_msgs/srv/SetGoal` in one of zenoh's queries; None if it is refused already."""
+class RosCall:
+    """A client's call of a service of ROS 2, `data` its CDR bytes; respond exactly once."""
+
+    def __init__(self, data: bytes, attachment: bytes | None, send: Callable[[bytes, bytes | None], None]) -> None:
+        """A call that arrived.
+
+        Args:
+          data: The request.
+          attachment: Its number and its client, which the response repeats.
+          send: Sends the CDR bytes and the attachment of the response.
+        """
+        self.data = data
+        self._attachment, self._send = attachment, send
+
+    def respond(self, response: bytes) -> None:
+        """Send the CDR bytes of the response."""
+        origin = unpack(self._attachment)
+        if isinstance(origin, Origin) and origin.sender:
+            self._send(response, pack(replace(origin, source_ns=wall_ns())))
+        else:
+            self._send(response, None)
+
+
+def ros_call(query: Any) -> RosCall:
+    """The call in one of zenoh's queries."""
     payload, attachment = (None if part is None else part.to_bytes() for part in (query.payload, query.attachment))
 
-    def respond(response: bytes, origin: bytes | None) -> None:
+    def send(response: bytes, origin: bytes | None) -> None:
         query.reply(query.key_expr, response, encoding=BARE, attachment=origin)
         query.drop()
 
-    return goal_request(payload, attachment, respond)
+    return RosCall(payload or b"", attachment, send)
 
 
-def goal_request(
-    payload: bytes | None, attachment: bytes | None, respond: Callable[[bytes, bytes | None], None]
-) -> ServiceRequest | None:
-    """A request of `tailor_msgs/srv/SetGoal`; None if it was damaged, and is refused already.
-
-    Args:
-      payload: Its CDR bytes.
-      attachment: Its number and its client, which the response repeats.
-      respond: Sends the CDR bytes and the attachment of a response.
-    """
+def goal_request(call: RosCall) -> ServiceRequest | None:
+    """The request in a call of `tailor_msgs/srv/SetGoal`; None if it was damaged, and is refused already."""
     from tailor.schemas.ros2.service import goal_of, response
 
-    origin = unpack(attachment)
-    number = origin.sequence if isinstance(origin, Origin) else 0
-    sender = origin.sender if isinstance(origin, Origin) else ""
+    def respond(accepted: bool, text: str) -> None:
+        call.respond(response(accepted, text))
 
-    def answer(accepted: bool, text: str) -> None:
-        respond(response(accepted, text), pack(Origin(number, wall_ns(), sender)) if sender else None)
-
-    goal = goal_of(payload or b"")
+    goal = goal_of(call.data)
     if isinstance(goal, Rejected):
-        answer(False, f"the request is {goal.reason}")
+        respond(False, f"the request is {goal.reason}")
         return None
-    return ServiceRequest(goal, answer)
+    return ServiceRequest(goal, respond)

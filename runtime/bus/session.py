@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -16,10 +16,11 @@ from tailor.runtime.bus.inbox import EVENT_DEPTH, Inbox, Source
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
-from tailor.runtime.bus.ros_wires import Announcer, GraphView, as_plain, ros_request
+from tailor.runtime.bus.ros_wires import Announcer, GraphView, RosCall, as_plain, goal_request, ros_call
 from tailor.runtime.bus.service import (
     QueryableSource,
     RequestSource,
+    ServiceRequest,
     ServiceServer,
     no_service,
     text_of,
@@ -29,7 +30,7 @@ from tailor.runtime.bus.service import (
 from tailor.runtime.bus.wires import MAX_PLAIN_BYTES, RingSource, Subscriptions, Wire, raw_of, received_raw
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import UsageError
-from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, parsed_key
+from tailor.schemas.ros2.graph import ADMIN_SPACE, Kind, Named, parsed_key
 from tailor.schemas.ros2.profiles import BARE, COPY, PLAIN, KeyProfile, ros_topic, topic_at
 from tailor.schemas.services import MAX_REQUEST_BYTES, SERVICES
 from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
@@ -205,14 +206,22 @@ class Session:
             from tailor.schemas.ros2 import service
 
             service.prime()
-            named = service.set_goal()
-            requests: Any = zenoh.handlers.RingChannel(16)
-            key = named.key(self.keys.domain)
-            # A client of ROS 2 calls only queryables that are declared complete.
-            queryable = self._zenoh.declare_queryable(key, requests, complete=True)
-            sources.append(QueryableSource(queryable, ros_request))
-            self._graph.announce(Kind.SERVICE, named, self.keys.domain)
+            sources.append(self.ros_service(service.set_goal(), goal_request))
         return ServiceServer(*sources)
+
+    def ros_service(self, named: Named, read: Callable[[RosCall], ServiceRequest | None]) -> RequestSource:
+        """Requests of ROS 2's clients of a service, under rmw_zenoh; `read` is as of QueryableSource."""
+        calls: Any = zenoh.handlers.RingChannel(16)
+        # A client of ROS 2 calls only queryables that are declared complete.
+        queryable = self._zenoh.declare_queryable(named.key(self.keys.domain), calls, complete=True)
+        self._graph.announce(Kind.SERVICE, named, self.keys.domain)
+        return QueryableSource(queryable, lambda query: read(ros_call(query)))
+
+    def ros_publisher(self, named: Named) -> Publisher:
+        """Publisher of a topic that ROS 2 knows under rmw_zenoh, and the table of topics does not."""
+        key = named.key(self.keys.domain)
+        self._graph.announce(Kind.PUBLISHER, named, self.keys.domain)
+        return Publisher(key, Wire([self._wire(key, BARE, "data")]), self.sender)
 
     def call(self, key: str, text: str, timeout_s: float = 2.0) -> tuple[bool, str]:
         """Send a request to the service `key` and wait for the response.

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.action import NAME
 from tailor.schemas.topics import TOPICS
+
+ACTION = f"*/{NAME}/_action/**"  # what its clients hear; `exec/status` has more of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +44,7 @@ def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
         if word not in TOPICS and "/" not in word and "*" not in word:
             names = ", ".join(TOPICS)
             raise UsageError(f"topic {word!r}: expected a name ({names}), a key pattern like agilo/* or a type")
-    unrecorded = () if parts[0] else tuple(name for name, topic in TOPICS.items() if not topic.recorded)
+    unrecorded = () if parts[0] else (*(name for name, topic in TOPICS.items() if not topic.recorded), ACTION)
     return Selection(parts[0], parts[1] + unrecorded)
 
 

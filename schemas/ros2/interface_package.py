@@ -1,4 +1,4 @@
-"""The ROS 2 interface package `tailor_msgs`: a workspace builds it, and then knows our messages and the service.
+"""The ROS 2 interface package `tailor_msgs`: a workspace builds it, and then knows our messages, service and action.
 
 `python -m tailor.schemas.ros2.interface_package [FOLDER]` writes it; nothing of ours reads it. Comments come from the
 dataclasses: the first line of the docstring, and the comment behind each field.
@@ -16,7 +16,7 @@ from pathlib import Path
 from tailor import __version__
 from tailor.schemas.packages.msg_definitions import declarations
 from tailor.schemas.packages.ros_names import PACKAGE, ros_type
-from tailor.schemas.ros2 import service
+from tailor.schemas.ros2 import action, service
 from tailor.schemas.typesystem import own_types
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,11 +27,12 @@ MANIFEST = """\
 <package format="3">
   <name>{package}</name>
   <version>{version}</version>
-  <description>Messages and services of the robot executive Tailor.</description>
+  <description>Messages, service and action of the robot executive Tailor.</description>
   <maintainer email="tailor@example.org">The Tailor developers</maintainer>
   <license>Apache-2.0</license>
   <buildtool_depend>ament_cmake</buildtool_depend>
   <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <depend>action_msgs</depend>
   <depend>std_msgs</depend>
   <exec_depend>rosidl_default_runtime</exec_depend>
   <member_of_group>rosidl_interface_packages</member_of_group>
@@ -46,11 +47,12 @@ project({package})
 
 find_package(ament_cmake REQUIRED)
 find_package(rosidl_default_generators REQUIRED)
+find_package(action_msgs REQUIRED)
 find_package(std_msgs REQUIRED)
 
 rosidl_generate_interfaces(${{PROJECT_NAME}}
 {files}
-  DEPENDENCIES std_msgs
+  DEPENDENCIES action_msgs std_msgs
 )
 
 ament_export_dependencies(rosidl_default_runtime)
@@ -77,6 +79,7 @@ def files() -> dict[str, str]:
     """Content of every file of the package, by its path in it."""
     interfaces = {f"msg/{name}": text for name, text in msg_files().items()}
     interfaces[f"srv/{service.SET_GOAL.rpartition('/')[2]}.srv"] = service.text()
+    interfaces[f"action/{action.ACTION.rpartition('/')[2]}.action"] = action.text()
     listed = "\n".join(f'  "{path}"' for path in sorted(interfaces))
     return {
         "package.xml": MANIFEST.format(package=PACKAGE, version=__version__),
@@ -88,7 +91,7 @@ def files() -> dict[str, str]:
 def write(folder: Path = FOLDER) -> None:
     """Write all files and remove those whose type no longer exists."""
     content = files()
-    for path in (*folder.glob("msg/*.msg"), *folder.glob("srv/*.srv")):
+    for path in (*folder.glob("msg/*.msg"), *folder.glob("srv/*.srv"), *folder.glob("action/*.action")):
         if path.relative_to(folder).as_posix() not in content:
             path.unlink()
     for name, text in content.items():

@@ -54,18 +54,18 @@ def response(accepted: bool, message: str) -> bytes:
 
 def goal_of(data: bytes) -> str | Rejected:
     """The goal in a request's CDR bytes."""
-    ros = _read(data, f"{SET_GOAL}_Request")
+    ros = _read(data, "Request")
     return ros if isinstance(ros, Rejected) else str(ros.goal)
 
 
 def result_of(data: bytes) -> tuple[bool, str] | Rejected:
     """(accepted, message) in a response's CDR bytes."""
-    ros = _read(data, f"{SET_GOAL}_Response")
+    ros = _read(data, "Response")
     return ros if isinstance(ros, Rejected) else (bool(ros.accepted), str(ros.message))
 
 
-def _read(data: bytes, name: str) -> Any:
-    set_goal_hash()
+def read_request(data: bytes, name: str) -> Any:
+    """The ROS value in CDR bytes of a request, or of a response, of the type `name`; Rejected if they hold none."""
     if len(data) > MAX_REQUEST_BYTES:
         return Rejected(DecodeRefusal.TOO_LONG.value)
     try:
@@ -73,3 +73,8 @@ def _read(data: bytes, name: str) -> Any:
     except damage():
         return Rejected(DecodeRefusal.MALFORMED.value)
     return value if 0 <= left <= MAX_TRAILING_BYTES else Rejected(DecodeRefusal.TRAILING_BYTES.value)
+
+
+def _read(data: bytes, part: str) -> Any:
+    set_goal_hash()
+    return read_request(data, f"{SET_GOAL}_{part}")

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, service_keys, tokens
+from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, action_topic_keys, service_keys, tokens
 from tailor.schemas.messages import EStop
+from tailor.schemas.ros2.action import MAX_TOPIC_BYTES
 from tailor.schemas.ros2.profiles import ros_patterns
 from tailor.schemas.services import MAX_REQUEST_BYTES, ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
@@ -59,6 +60,8 @@ def size_limits() -> list[dict[str, Any]]:
         {"messages": ["put"], "key_exprs": _keys(t for t in TOPICS.values() if t.max_bytes == size), "size_limit": size}
         for size in sizes
     ]
+    action = {"key_exprs": action_topic_keys(SERVICES.values()), "size_limit": MAX_TOPIC_BYTES}
+    limits.append({"messages": ["put"], **action})
     requests = {"messages": ["query"], "key_exprs": ["**"], "size_limit": MAX_REQUEST_BYTES}
     return [{"flows": ["ingress"], **limit} for limit in (*limits, requests)]
 
@@ -93,7 +96,10 @@ def _rules_of(role: Role) -> list[dict[str, Any]]:
     topics = [topic for topic in TOPICS.values() if role in may_publish(topic)]
     called = [service for service in SERVICES.values() if role in service.callers]
     served = [service for service in SERVICES.values() if role == service.server]
-    rows = [("publish", ["put"], _keys(topics)), ("call", ["query"], service_keys(called))]
+    rows = [
+        ("publish", ["put"], [*_keys(topics), *action_topic_keys(served)]),
+        ("call", ["query"], service_keys(called)),
+    ]
     rows += [("serve", ["declare_queryable", "reply"], service_keys(served))]
     rows += [("announce", ["liveliness_token"], tokens(topics, called, served))]
     return [_rule(f"{role} {name}", kinds, ["ingress"], keys) for name, kinds, keys in rows if keys]

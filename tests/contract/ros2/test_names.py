@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tailor.schemas.ros2.action import achieve_goal, add_action
 from tailor.schemas.ros2.graph import Kind, Node, qos
 from tailor.schemas.ros2.profiles import ros_topic
 from tailor.schemas.ros2.service import SET_GOAL, set_goal
@@ -23,9 +24,13 @@ STANDARD = sorted({ros_type(kind) for kind in message_types() if kind.ROS_TYPE} 
 
 
 def names():
-    """Key, publisher's token and subscription's token of each topic; of the service those of server and client."""
+    """Key, publisher's token and subscription's token of each topic; of the services those of server and client."""
     table = {name: (ros_topic(topic, "agilo"), Kind.PUBLISHER, Kind.SUBSCRIPTION) for name, topic in TOPICS.items()}
-    table["goal"] = (set_goal(), Kind.SERVICE, Kind.CLIENT)
+    parts = achieve_goal()
+    for service in (set_goal(), *parts.services):
+        table[service.name] = (service, Kind.SERVICE, Kind.CLIENT)
+    for topic in parts.topics:
+        table[topic.name] = (topic, Kind.PUBLISHER, Kind.SUBSCRIPTION)
     return {name: [row[0].key(0), *(token(row[0], kind) for kind in row[1:])] for name, row in table.items()}
 
 
@@ -85,6 +90,24 @@ def test_zenoh_ros2_sdk_computes_the_same_hash_of_the_service_and_the_same_quali
     assert utils.compute_service_type_hash(SET_GOAL, REQUEST, RESPONSE) == set_goal().hash
     best_effort = quality.QosProfile(reliability=quality.QosReliability.BEST_EFFORT)
     assert [quality.QosProfile().encode(), best_effort.encode()] == [qos(), qos(reliable=False)]
+
+
+def test_the_types_of_an_action_are_derived_as_ros_derives_them():
+    """The hashes are those that `test_msgs` and `action_msgs` of ROS 2 Kilted state."""
+    name = "test_msgs/action/Fibonacci"
+    add_action(name, "int32 order", "int32[] sequence", "int32[] sequence")
+    derived = ("Goal", "Result", "Feedback", "SendGoal", "GetResult", "FeedbackMessage")
+    assert {part: hash_of(f"{name}_{part}").removeprefix("RIHS01_") for part in derived} == {
+        "Goal": "e58ef5a8f4f039ab522a740823547c460b1d5aed8031c8b7825d33d345d90df8",
+        "Result": "0774b095467813c6904d475498b5486b7ebd4cda6a4569f97e8de8c862689049",
+        "Feedback": "7d1110f2efa019ad5ad8ad2244db98d862f39dc9fae8c976814b0065fa2f32d5",
+        "SendGoal": "d807633803e38e164276573cd97e9fbd71e109c290bbf4cc312a0a1c9da7bbd9",
+        "GetResult": "5d30fdeb21d20e117aa5f36c7b4f0b6874f1a8cf7a9c038d58f1156c5737b209",
+        "FeedbackMessage": "37487bae8cea358366b97003c1ef1ca7ce7c08df36f9e8cca496624226aee64e",
+    }
+    parts = achieve_goal()
+    assert parts.cancel_goal.hash == "RIHS01_573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a"
+    assert parts.status.hash == "RIHS01_6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e"
 
 
 @pytest.mark.parametrize("name", STANDARD)

@@ -1,17 +1,22 @@
 """A node of zenoh-ros2-sdk, which shares no code with us, and a session of ours: each finds and hears the other."""
 
+from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from tailor.runtime.bus.opening import open_client, open_router
+from tailor.runtime.bus.ros_action.server import GoalAction
 from tailor.schemas import codec
 from tailor.schemas import messages as m
+from tailor.schemas.ros2.action import achieve_goal
+from tailor.schemas.ros2.action_messages import GoalState
 from tailor.schemas.ros2.profiles import KeyProfile, ros_topic
 from tailor.schemas.topics import TOPICS
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
-from tests.support.ros2.routing import goal_client, wait_for_subscriber
+from tests.support.ros2.routing import goal_client, stranger, wait_for_subscriber
 
 sdk = pytest.importorskip("zenoh_ros2_sdk")
 node = pytest.importorskip("tests.support.ros2.sdk")
@@ -114,6 +119,39 @@ def test_its_call_of_the_service_is_answered(ros, endpoint, goal, answer):
     request.accept() if answer[0] else request.refuse("no goal")
     (response,) = wait_until(lambda: answered)
     assert (response.accepted, response.message) == answer
+
+
+def test_it_pursues_a_goal_by_the_action(ros, endpoint):
+    """The definitions are flat: CDR has no bytes for nesting. Only the hashes are ours."""
+    make, session = ros
+    action, parts, goal_id = GoalAction(session), achieve_goal(), b"\7" * 16
+    heard = []
+    make(sdk.ROS2Subscriber, f"/{parts.status.name}", parts.status.type, heard.append)
+
+    def called(part, request, response, **fields):
+        with stranger(endpoint) as other, other.declare_querier(part.key(KEYS.domain)) as querier:
+            wait_until(lambda: querier.matching_status.matching, "a server")
+        request = f"uint8[16] goal_id\n{request}"
+        client = make(sdk.ROS2ServiceClient, f"/{part.name}", part.type, request, response, type_hash=part.hash)
+        answered = []
+        client.call_async(answered.append, goal_id=np.frombuffer(goal_id, np.uint8), **fields)
+        return answered
+
+    sent = called(parts.send_goal, "string goal", "bool accepted\nbuiltin_interfaces/Time stamp", goal="(visited a)")
+    request = wait_until(action.poll)
+    assert request.text == "(visited a)"
+    request.accept()
+    assert wait_until(lambda: sent)[0].accepted
+    fields = "int8 status\nstring result\nstring reason\nstring detail\nfloat64 duration_s"
+    result = called(parts.get_result, "", fields)
+    wait_until(lambda: action.poll() or action._waiting, "the request for the result")
+    status = m.ExecStatus(0, 1, "EXECUTING", "", "line", "(visited a)", "", "slide", 0, 0.0, 0.0)
+    action.report(status)
+    action.report(replace(status, mode="READY", result="achieved"))
+    (answer,) = wait_until(lambda: result)
+    assert (answer.status, answer.result) == (GoalState.SUCCEEDED, "achieved")
+    wait_until(lambda: len(heard) == 2, "the states")
+    assert [each.status_list[0].status for each in heard] == [GoalState.EXECUTING, GoalState.SUCCEEDED]
 
 
 def test_it_lists_our_topics_and_service_while_we_live(ros):

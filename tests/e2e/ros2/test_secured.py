@@ -6,13 +6,16 @@ import pytest
 
 from tailor.runtime.bus.attachment import Origin
 from tailor.runtime.bus.opening import open_client, open_local_router
+from tailor.runtime.bus.ros_action.server import GoalAction
 from tailor.schemas import codec
 from tailor.schemas.messages import EStop, Odometry, VelocityCommand
+from tailor.schemas.ros2.action import achieve_goal
 from tailor.schemas.ros2.graph import Kind, parsed_token
 from tailor.schemas.ros2.profiles import KeyProfile, ros_topic
 from tailor.schemas.topics import TOPICS
 from tests.support.bus_system import free_endpoint
 from tests.support.patience import wait_until
+from tests.support.ros2.action_client import send_request
 
 KEYS = KeyProfile("rmw_zenoh", 0)
 COMMAND = VelocityCommand(0, 0.5, 0.0)
@@ -68,6 +71,22 @@ def test_people_stop_and_others_do_not(bus):
         for publisher in publishers:
             publisher.publish(EStop(True))
         assert [sample.sender for sample in wait_until(inbox.drain)] == [people.sender]
+
+
+@pytest.mark.parametrize("role", ["observer", "driver", "player"])
+def test_people_send_goals_by_the_action_and_others_do_not(bus, role):
+    part = achieve_goal().send_goal
+    with (
+        open_client(bus, role="executive") as executive,
+        open_client(bus, role="people") as people,
+        open_client(bus, role=role) as other,
+    ):
+        action = GoalAction(executive)
+        with people._zenoh.declare_querier(part.key(0)) as querier:
+            wait_until(lambda: querier.matching_status.matching, "a server")
+        for session, goal in ((other, "(theirs)"), (people, "(ours)")):
+            session._zenoh.get(part.key(0), payload=send_request(b"1" * 16, goal))
+        assert wait_until(action.poll).text == "(ours)"
 
 
 def test_a_role_is_announced_as_what_it_may_be_and_everybody_sees_it(bus):

@@ -1,4 +1,4 @@
-"""The live shell around a core whose robot's code raises in the midst of a run."""
+"""The live shell: around a core whose robot's code raises in the midst of a run, and with a client of ROS 2."""
 
 import dataclasses
 import re
@@ -9,6 +9,9 @@ from tailor.executive.shell import Shell
 from tailor.runtime.bus.service import ServiceRequest
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import TickReport, VelocityCommand
+from tailor.schemas.ros2.action_messages import GoalState
+from tailor.schemas.ros2.profiles import PLAIN
+from tests.support.ros2.action_client import ClientSession, cancel_request, result_request, send_request
 from tests.support.toy_domain import SLIDE, driver, line_context, odometry
 
 
@@ -27,6 +30,8 @@ class Clock:
 
 class Session:
     """A bus on which a driver obeys, and the robot stands at 0; keeps what is published."""
+
+    keys = PLAIN
 
     def __init__(self):
         self.published, self._tick = [], 0
@@ -149,3 +154,45 @@ def test_a_goal_after_a_short_pause_or_later_counts(pause_s, delay_s, goal):
 
 def test_dropping_the_goal_counts_also_after_a_pause():
     assert answer_after(12.0, "(and)")[0] == (True, "no goal is open")
+
+
+class RosSession(ClientSession, Session):
+    """The same bus with a client of ROS 2's action."""
+
+    def __init__(self):
+        ClientSession.__init__(self)
+        Session.__init__(self)
+
+
+def results_of(goals, then=()):
+    """Send each goal by the action in its tick, cancel in others; states and results at the end of 30 ticks."""
+    context, session = line_context(), RosSession()
+    shell = Shell(context, session, Clock(), {})
+    ids = {tick: bytes([tick]) * 16 for tick in goals}
+
+    def act(state):
+        if state.tick in goals:
+            session.call("send_goal", send_request(ids[state.tick], goals[state.tick]))
+        if state.tick in then:
+            session.call("cancel_goal", cancel_request(bytes(16)))
+        return state.tick == 30
+
+    shell.run("", act)
+    calls = [session.call("get_result", result_request(each)) for each in ids.values()]
+    shell._action.poll()
+    return [(call.response.status, call.response.result.result, call.response.result.detail) for call in calls]
+
+
+def test_a_client_of_ros_learns_what_became_of_its_goal():
+    invalid = "goal invalid: goal:1:1: "
+    achieved, refused = results_of({3: "(at home)", 8: "(at"})
+    assert achieved == (GoalState.SUCCEEDED, "achieved", "")
+    assert (refused[0], refused[1], refused[2][: len(invalid)]) == (GoalState.ABORTED, "refused", invalid)
+
+
+def test_a_client_of_ros_cancels_its_goal_and_one_that_is_open_at_the_end_is_aborted():
+    assert results_of({3: "(visited a)"}, then=[12]) == [(GoalState.CANCELED, "cancelled", "")]
+    assert results_of({3: "(visited a)", 9: "(visited b)"}) == [
+        (GoalState.ABORTED, "replaced", ""),
+        (GoalState.ABORTED, "stopped", ""),
+    ]

@@ -4,6 +4,7 @@ import pytest
 import zenoh
 
 from tailor.runtime.bus.rights import access
+from tailor.schemas.ros2.action import achieve_goal
 from tailor.schemas.ros2.graph import Kind, Node, qos
 from tailor.schemas.ros2.profiles import ros_topic
 from tailor.schemas.ros2.service import set_goal
@@ -14,6 +15,7 @@ SUBJECTS = [{"id": role, "usernames": [role]} for role in (*ROLES, access.GATEWA
 TABLE = access.access_control(SUBJECTS)
 RULES = {rule["id"]: rule for rule in TABLE["rules"]}
 COMMANDS = {"*/cmd_vel", "*/joint_cmd"}
+ACTION_TOPICS = {named.key("*") for named in achieve_goal().topics}
 PEOPLES = {"*/arm_request", "estop", "clock"}
 
 
@@ -67,7 +69,16 @@ def test_a_player_of_recordings_drives_arms_and_stops_nobody():
 def test_nobody_publishes_on_a_pattern_that_matches_several_topics():
     keys = set().union(*(allowed(role, "put") for role in ROLES))
     plain = {topic.key.format(robot="*") for topic in TOPICS.values()}
-    assert keys <= plain | {ros_topic(topic, "*").key("*") for topic in TOPICS.values()}
+    assert keys <= plain | {ros_topic(topic, "*").key("*") for topic in TOPICS.values()} | ACTION_TOPICS
+
+
+def test_only_the_executive_publishes_what_becomes_of_the_goals_of_the_action():
+    for key in ACTION_TOPICS:
+        assert [role for role in ROLES if key in allowed(role, "put")] == ["executive"]
+    for named in achieve_goal().topics:
+        token = Node(0, "ab", "node").token_of(1, Kind.PUBLISHER, named, qos())
+        announcers = {role: [zenoh.KeyExpr(key) for key in allowed(role, "liveliness_token")] for role in ROLES}
+        assert [role for role in ROLES if any(key.includes(token) for key in announcers[role])] == ["executive"]
 
 
 @pytest.mark.parametrize("name", TOPICS)
@@ -94,9 +105,10 @@ def test_everybody_may_announce_a_node_and_a_subscription_and_look_at_the_graph(
         assert allowed(role, "liveliness_query") == allowed(role, "declare_liveliness_subscriber") == {"@ros2_lv/**"}
 
 
-def test_only_the_executive_is_announced_as_the_server_of_goals_and_only_people_as_its_clients():
+@pytest.mark.parametrize("service", [set_goal(), *achieve_goal().services], ids=lambda named: named.name)
+def test_only_the_executive_is_announced_as_the_server_of_goals_and_only_people_as_its_clients(service):
     for kind, only in ((Kind.SERVICE, "executive"), (Kind.CLIENT, "people")):
-        token = Node(0, "ab", "node").token_of(1, kind, set_goal(), qos())
+        token = Node(0, "ab", "node").token_of(1, kind, service, qos())
         patterns = {role: [zenoh.KeyExpr(key) for key in allowed(role, "liveliness_token")] for role in ROLES}
         assert [role for role in ROLES if any(pattern.includes(token) for pattern in patterns[role])] == [only]
 
@@ -106,6 +118,7 @@ def test_only_the_executive_is_announced_as_the_server_of_goals_and_only_people_
     [
         ("exec/goal", "executive"),
         (set_goal().key("*"), "executive"),
+        *((named.key("*"), "executive") for named in achieve_goal().services),
         ("*/sim/*", "driver"),
         ("recorder/snapshot", "recorder"),
     ],
@@ -132,7 +145,8 @@ def test_every_topic_and_request_has_a_largest_size():
     limits = access.size_limits()
     sizes = {key: limit["size_limit"] for limit in limits for key in limit["key_exprs"] if limit["messages"] == ["put"]}
     plain = {topic.key.format(robot="*"): topic.max_bytes for topic in TOPICS.values()}
-    assert sizes == plain | {ros_topic(topic, "*").key("*"): topic.max_bytes for topic in TOPICS.values()}
+    ros = {ros_topic(topic, "*").key("*"): topic.max_bytes for topic in TOPICS.values()}
+    assert sizes == plain | ros | dict.fromkeys(ACTION_TOPICS, 65536)
     assert (sizes["*/cmd_vel"], sizes["estop"]) == (4096, 4096)
     assert {"flows": ["ingress"], "messages": ["query"], "key_exprs": ["**"], "size_limit": 65536} in limits
     assert {tuple(limit["flows"]) for limit in limits} == {("ingress",)}

@@ -25,6 +25,7 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState, EStop, ExecStatus, Odometry, Provenance
 from tailor.schemas.own import example
+from tailor.schemas.ros2.action import achieve_goal
 from tests.support.patience import wait_until
 
 SENDER = "ab" * 16
@@ -305,6 +306,8 @@ def test_deletes_and_unwanted_topics_are_not_recorded(tmp_path):
         ([], [], "anything/at/all", True),
         ([], [], "clock", False),
         (["clock"], [], "clock", True),
+        ([], [], achieve_goal().feedback.key(0), False),
+        (["*/exec/**"], [], achieve_goal().feedback.key(0), True),
         (["odom"], [], "agilo/odom", True),
         (["odom"], [], "agilo/pose", False),
         (["agilo/*"], [], "agilo/sim/truth", True),

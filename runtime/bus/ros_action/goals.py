@@ -1,0 +1,100 @@
+"""What became of the goals that clients of the action sent: at most one is open, the newest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from tailor.schemas.messages import ExecStatus
+from tailor.schemas.ros2.action_messages import ANY_GOAL, CancelCode, GoalInfo, GoalResult, GoalState
+
+UNKNOWN = GoalResult("")
+KEPT = 16  # goals that have ended, whose clients may still request the result
+
+
+@dataclass(slots=True)
+class ClientGoal:
+    """One goal; `text` is as the executive states it, None until it has done so."""
+
+    info: GoalInfo
+    state: GoalState = GoalState.EXECUTING
+    result: GoalResult = UNKNOWN
+    text: str | None = None
+    begun_ns: int = 0  # stamps of the first and the newest status since
+    newest_ns: int = 0
+
+    @property
+    def open(self) -> bool:
+        """Whether it is pursued."""
+        return self.state in (GoalState.EXECUTING, GoalState.CANCELING)
+
+
+class ClientGoals:
+    """The goals by their clients' ids, the oldest first."""
+
+    def __init__(self) -> None:
+        self._goals: dict[bytes, ClientGoal] = {}
+
+    def __iter__(self) -> Iterator[ClientGoal]:
+        return iter(self._goals.values())
+
+    def get(self, goal: bytes) -> ClientGoal | None:
+        """The goal with this id, if it is known."""
+        return self._goals.get(goal)
+
+    @property
+    def pursued(self) -> ClientGoal | None:
+        """The open goal."""
+        return next((goal for goal in self if goal.open), None)
+
+    def accept(self, goal: GoalInfo) -> None:
+        """The executive pursues a goal from now on; another one that was open is replaced."""
+        self.end(GoalResult("replaced"))
+        self._add(ClientGoal(goal))
+
+    def refuse(self, goal: GoalInfo, cause: str) -> None:
+        """The executive does not take a goal; its client reads the cause in the result."""
+        self._add(ClientGoal(goal, GoalState.ABORTED, GoalResult("refused", detail=cause)))
+
+    def to_cancel(self, named: GoalInfo) -> tuple[CancelCode, ClientGoal | None]:
+        """The open goal if a request to cancel means it, else why not."""
+        pursued = self.pursued
+        is_old = pursued is not None and pursued.info.stamp_ns <= named.stamp_ns  # all until then are meant
+        if pursued is not None and (is_old or named.id == pursued.info.id or named == GoalInfo(ANY_GOAL, 0)):
+            return CancelCode.NONE, pursued
+        if named.id == ANY_GOAL:
+            return CancelCode.NONE, None
+        known = named.id in self._goals
+        return (CancelCode.GOAL_TERMINATED if known else CancelCode.UNKNOWN_GOAL_ID), None
+
+    def report(self, status: ExecStatus) -> bool:
+        """Take the executive's status after a tick; returns whether the open goal has ended."""
+        goal = self.pursued
+        if goal is None:
+            return False
+        if goal.text is None:
+            goal.text, goal.begun_ns = status.goal, status.stamp_ns
+        goal.newest_ns = status.stamp_ns
+        if goal.text != status.goal:
+            return self.end(GoalResult("replaced"))
+        if status.result or not status.goal:  # without any, the goal was one without conditions
+            return self.end(GoalResult(status.result or "cancelled", status.result_reason, status.result_detail))
+        return status.mode == "FAULT" and self.end(GoalResult("fault", status.reason, status.detail))
+
+    def end(self, result: GoalResult) -> bool:
+        """End the open goal, if there is one; returns whether there was."""
+        goal = self.pursued
+        if goal is None:
+            return False
+        if result.result == "cancelled" and goal.state is GoalState.CANCELING:
+            goal.state = GoalState.CANCELED
+        else:
+            goal.state = GoalState.SUCCEEDED if result.result == "achieved" else GoalState.ABORTED
+        goal.result = replace(result, duration_s=1e-9 * (goal.newest_ns - goal.begun_ns))
+        return True
+
+    def _add(self, goal: ClientGoal) -> None:
+        self._goals[goal.info.id] = goal
+        ended = [each.info.id for each in self if not each.open]
+        for old in ended[: max(len(ended) - KEPT, 0)]:
+            del self._goals[old]

@@ -1,0 +1,115 @@
+"""Server of the action: its requests to pursue or drop a goal are requests of the executive's loop like any other."""
+
+from __future__ import annotations
+
+from tailor.runtime.bus.ros_action.goals import UNKNOWN, ClientGoals
+from tailor.runtime.bus.ros_wires import RosCall
+from tailor.runtime.bus.service import ServiceRequest
+from tailor.runtime.bus.session import Session
+from tailor.runtime.clock import wall_ns
+from tailor.schemas.errors import Rejected
+from tailor.schemas.messages import ExecStatus
+from tailor.schemas.ros2 import action_messages as messages
+from tailor.schemas.ros2.action import achieve_goal
+from tailor.schemas.ros2.action_messages import CancelCode, GoalInfo, GoalResult, GoalState
+
+DROP = "(and)"  # a goal without conditions drops the open one
+MAX_WAITING = 16  # requests for the result of an open goal
+
+
+class GoalAction:
+    """The action of one executive, which polls it and reports to it once a tick; without effect in a plain profile."""
+
+    def __init__(self, session: Session) -> None:
+        """Declare its services and topics, if the session is part of ROS 2's graph."""
+        self._goals = ClientGoals()
+        self._waiting: list[tuple[bytes, RosCall]] = []  # ids of open goals, and who waits for their result
+        self._declared = session.keys.announces
+        if self._declared:
+            messages.prime()
+            parts = achieve_goal()
+            self._results = session.ros_service(parts.get_result, self._result)
+            self._cancels = session.ros_service(parts.cancel_goal, self._cancel)
+            self._sent = session.ros_service(parts.send_goal, self._send)
+            self._feedback, self._states = session.ros_publisher(parts.feedback), session.ros_publisher(parts.status)
+
+    def poll(self) -> ServiceRequest | None:
+        """Next request to pursue or to drop a goal; requests for results are answered, or wait."""
+        if not self._declared:
+            return None
+        for _ in range(MAX_WAITING):
+            self._results.receive()
+        return self._cancels.receive() or self._sent.receive()
+
+    def report(self, status: ExecStatus) -> None:
+        """Take the status after a tick: feedback to the client of the open goal, and its result if it has ended."""
+        goal = self._goals.pursued
+        if goal is None:
+            return
+        self._feedback.publish_encoded(messages.feedback_message(goal.info.id, status))
+        if self._goals.report(status):
+            self._tell()
+
+    def close(self) -> None:
+        """The executive ends: whoever waits for a result gets one."""
+        if self._goals.end(GoalResult("stopped")):
+            self._tell()
+
+    def _send(self, call: RosCall) -> ServiceRequest | None:
+        sent = messages.sent_goal(call.data)
+        if isinstance(sent, Rejected) or self._goals.get(sent[0]) is not None:
+            call.respond(messages.sent_response(False, wall_ns()))
+            return None
+        goal = GoalInfo(sent[0], wall_ns())
+
+        def respond(accepted: bool, text: str) -> None:
+            # ROS 2 has no reason for a rejected goal: one that is refused is accepted, and aborted with the cause.
+            if accepted:
+                self._goals.accept(goal)
+            else:
+                self._goals.refuse(goal, text)
+            call.respond(messages.sent_response(True, goal.stamp_ns))
+            self._tell()
+
+        return ServiceRequest(sent[1], respond)
+
+    def _cancel(self, call: RosCall) -> ServiceRequest | None:
+        named = messages.goals_to_cancel(call.data)
+        if isinstance(named, Rejected):
+            call.respond(messages.cancel_response(CancelCode.REJECTED, ()))
+            return None
+        code, goal = self._goals.to_cancel(named)
+        if goal is None:
+            call.respond(messages.cancel_response(code, ()))
+            return None
+
+        def respond(accepted: bool, _: str) -> None:
+            if accepted:
+                goal.state = GoalState.CANCELING
+                call.respond(messages.cancel_response(CancelCode.NONE, [goal.info]))
+                self._tell()
+            else:
+                call.respond(messages.cancel_response(CancelCode.REJECTED, ()))
+
+        return ServiceRequest(DROP, respond)
+
+    def _result(self, call: RosCall) -> None:
+        wanted = messages.asked_result(call.data)
+        goal = None if isinstance(wanted, Rejected) else self._goals.get(wanted)
+        if goal is None:
+            call.respond(messages.result_response(GoalState.UNKNOWN, UNKNOWN))
+        elif goal.open and len(self._waiting) < MAX_WAITING:
+            self._waiting.append((goal.info.id, call))
+        else:
+            call.respond(messages.result_response(goal.state, goal.result))
+
+    def _tell(self) -> None:
+        """Publish the states of the goals, and answer who waits for the result of one that has ended."""
+        self._states.publish_encoded(messages.states_message((goal.info, goal.state) for goal in self._goals))
+        waiting, self._waiting = self._waiting, []
+        for wanted, call in waiting:
+            goal = self._goals.get(wanted)
+            if goal is not None and goal.open:
+                self._waiting.append((wanted, call))
+            elif goal is not None:
+                call.respond(messages.result_response(goal.state, goal.result))
