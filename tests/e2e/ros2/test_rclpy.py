@@ -12,6 +12,7 @@ import pytest
 from tailor.executive import domains
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode
+from tailor.schemas.ros2.action_messages import GoalInfo, GoalState, states_message
 from tailor.schemas.typesystem import message_types, ros_type, type_of
 from tests.support.bus_system import ROOT, bus_system
 from tests.support.robots.driving import achieved, arm, executive_on, ready
@@ -43,10 +44,21 @@ def test_ros_reads_the_recorded_messages_and_writes_the_same_values():
     known = {ros_type(kind) for kind in message_types() if ros_type(kind).split("/")[0] in STANDARD}
     recorded = [each for each in open_recording(golden).messages() if each.ros_type in known]
     assert {each.ros_type for each in recorded} >= {"geometry_msgs/msg/TwistStamped", "nav_msgs/msg/Odometry"}
-    lines = "".join(f"{each.ros_type} {each.data.hex()}\n" for each in recorded)
-    command = [sys.executable, "-m", IN_ROS, "tests.support.ros2.read_with_rclpy"]
-    written = subprocess.run(command, input=lines, capture_output=True, text=True, check=True, cwd=ROOT).stdout.split()
-    assert len(written) == len(recorded)
+    written = written_by_ros((each.ros_type, each.data) for each in recorded)
     for each, data in zip(recorded, written, strict=True):
         kind = type_of(each.ros_type)
-        assert decode(kind, bytes.fromhex(data)) == decode(kind, each.data)
+        assert decode(kind, data) == decode(kind, each.data)
+
+
+def test_ros_reads_the_states_of_an_actions_goals_and_writes_the_same_bytes():
+    goals = [(GoalInfo(bytes(range(16)), 1_700_000_000_000_000_123), state) for state in GoalState]
+    states = states_message(goals)
+    assert written_by_ros([("action_msgs/msg/GoalStatusArray", states)]) == [states]
+
+
+def written_by_ros(messages):
+    """What ROS 2 writes of each message that it has read."""
+    lines = "".join(f"{kind} {data.hex()}\n" for kind, data in messages)
+    command = [sys.executable, "-m", IN_ROS, "tests.support.ros2.read_with_rclpy"]
+    done = subprocess.run(command, input=lines, capture_output=True, text=True, check=True, cwd=ROOT)
+    return [bytes.fromhex(line) for line in done.stdout.split()]
