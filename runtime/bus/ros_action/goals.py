@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
+from tailor.runtime.bus.followed_goal import FollowedGoal
 from tailor.schemas.messages import ExecStatus
 from tailor.schemas.ros2.action_messages import ANY_GOAL, CancelCode, GoalInfo, GoalResult, GoalState
 
@@ -14,14 +15,12 @@ KEPT = 16  # goals that have ended, whose clients may still request the result
 
 @dataclass(slots=True)
 class ClientGoal:
-    """One goal; `text` is as the executive states it, None until it has done so."""
+    """One goal, and what became of it."""
 
     info: GoalInfo
     state: GoalState = GoalState.EXECUTING
     result: GoalResult = UNKNOWN
-    text: str | None = None
-    begun_ns: int = 0  # stamps of the first and the newest status since
-    newest_ns: int = 0
+    followed: FollowedGoal = field(default_factory=FollowedGoal)
 
     @property
     def open(self) -> bool:
@@ -70,16 +69,8 @@ class ClientGoals:
     def report(self, status: ExecStatus) -> bool:
         """Take the executive's status after a tick; returns whether the open goal has ended."""
         goal = self.pursued
-        if goal is None:
-            return False
-        if goal.text is None:
-            goal.text, goal.begun_ns = status.goal, status.stamp_ns
-        goal.newest_ns = status.stamp_ns
-        if goal.text != status.goal:
-            return self.end(GoalResult("replaced"))
-        if status.result or not status.goal:  # without any, the goal was one without conditions
-            return self.end(GoalResult(status.result or "cancelled", status.result_reason, status.result_detail))
-        return status.mode == "FAULT" and self.end(GoalResult("fault", status.reason, status.detail))
+        result = None if goal is None else goal.followed.hear(status)
+        return result is not None and self.end(result)
 
     def end(self, result: GoalResult) -> bool:
         """End the open goal, if there is one; returns whether there was."""
@@ -90,7 +81,7 @@ class ClientGoals:
             goal.state = GoalState.CANCELED
         else:
             goal.state = GoalState.SUCCEEDED if result.result == "achieved" else GoalState.ABORTED
-        goal.result = replace(result, duration_s=1e-9 * (goal.newest_ns - goal.begun_ns))
+        goal.result = replace(result, duration_s=goal.followed.lasted_s)
         return True
 
     def _add(self, goal: ClientGoal) -> None:
