@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 from collections.abc import Callable
+from typing import Any
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.parsed_files import shown
@@ -18,6 +20,14 @@ def at_least(minimum: int, flag: str) -> Callable[[str], int]:
         return checked(value, minimum, flag)
 
     return read
+
+
+def add_count(
+    parser: argparse.ArgumentParser, flag: str, minimum: int, default: int, text: str, **options: Any
+) -> None:
+    """Declare a flag for a whole number from `minimum` up, whose help ends with the default."""
+    text += " (default %(default)s)"
+    parser.add_argument(flag, type=at_least(minimum, flag), default=default, help=text, **options)
 
 
 def checked(value: int, minimum: int, flag: str) -> int:

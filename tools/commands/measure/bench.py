@@ -14,7 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 from tailor.tools.cli.extras import BENCHMARKS_NEED, require
 from tailor.tools.cli.given_options import given_options
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.cli.output_files import check_output, check_writable
 from tailor.tools.cli.terminal import table_console
 
@@ -58,11 +58,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"benchmarks to run, see below (default: {unnamed})")
     parser.add_argument("--quick", action="store_true", help="shorter runs with a larger variance")
     parser.add_argument("--scale", action="store_true", help="planning: times of planning and of ticks as steps grow")
-    parser.add_argument("--minutes", type=at_least(1, "--minutes"), default=3, help="soak: duration (default 3)")
-    parser.add_argument("--seed", type=at_least(0, "--seed"), default=0, help="soak: random seed (default 0)")
-    parser.add_argument(
-        "--every", type=at_least(10, "--every"), default=60, metavar="S", help="soak: time between faults (default 60)"
-    )
+    add_count(parser, "--minutes", 1, 3, "soak: duration")
+    add_count(parser, "--seed", 0, 0, "soak: random seed")
+    add_count(parser, "--every", 10, 60, "soak: time between faults", metavar="S")
     parser.add_argument("--only", metavar="TEXT", default="", help="soak: only faults whose name contains this")
     parser.add_argument(
         "--output", type=Path, metavar="FILE", help="soak, growth: file (default out/soak.json, out/growth.json)"

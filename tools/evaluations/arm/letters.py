@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.domains.arm.letters import font
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.arm.letter_figures import (
     LEARNED,
     LEARNED_GREEDY,
@@ -44,9 +44,7 @@ SHOWN = "FTAS"  # in the picture
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate letters`."""
-    parser.add_argument(
-        "--seeds", type=at_least(1, "--seeds"), default=3, help="starts and sizes of each letter (default %(default)s)"
-    )
+    add_count(parser, "--seeds", 1, 3, "starts and sizes of each letter")
     parser.add_argument("--letters", default="", help="only these, e.g. BDF, from the same starts (default: all)")
     parser.add_argument("--no-oracle", action="store_true", help="leave out what chooses by the controller's own rule")
     configure_report(parser)

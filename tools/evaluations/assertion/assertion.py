@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import mean_interval, share_interval
@@ -41,9 +41,7 @@ Outcomes = Mapping[int, Outcome]  # by seed
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate assertion`."""
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=500, help="starts of each scenario (default %(default)s)"
-    )
+    add_count(parser, "--episodes", 2, 500, "starts of each scenario")
     parser.add_argument("--scenarios", nargs="+", metavar="NAME", help="scenarios (default: all with objects)")
     configure_tick_budget(parser)
     configure_report(parser)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.assertion.assertion import AFTER, BEFORE, succeeded, variants
 from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap, subgoal_map_of
 from tailor.tools.evaluations.assertion.subgoal_map_plot import draw_subgoal_map
@@ -39,15 +39,8 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure15`."""
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=40, help="starts to run (default %(default)s)"
-    )
-    parser.add_argument(
-        "--drawn",
-        type=at_least(0, "--drawn"),
-        default=2,
-        help="number of starts with a subgoal to draw (default %(default)s)",
-    )
+    add_count(parser, "--episodes", 2, 40, "starts to run")
+    add_count(parser, "--drawn", 0, 2, "number of starts with a subgoal to draw")
     configure_report(parser)
 
 

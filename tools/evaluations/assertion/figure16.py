@@ -10,7 +10,7 @@ from typing import Any
 
 from tailor.executive.interfaces.reasons import Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_shares
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
@@ -26,9 +26,7 @@ PAPER = "paper: 47 % before, 97 % after, needless 10 % and 8 % slower there"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure16`."""
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=500, help="approaches (default %(default)s)"
-    )
+    add_count(parser, "--episodes", 2, 500, "approaches")
     configure_report(parser)
 
 

@@ -22,7 +22,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.dependencies import OVER_BUS, dependencies
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of, with_thresholds
@@ -53,22 +53,10 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate live`."""
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=20, help="starts (default %(default)s, about 20 s each)"
-    )
+    add_count(parser, "--episodes", 2, 20, "starts, about 20 s each")
     parser.add_argument("--scenario", default="approach-dribble", help="soccer scenario (default %(default)s)")
-    parser.add_argument(
-        "--horizon",
-        type=at_least(1, "--horizon"),
-        default=2,
-        help="horizon of refinement; 1 is greedy (default %(default)s)",
-    )
-    parser.add_argument(
-        "--repeats",
-        type=at_least(2, "--repeats"),
-        default=15,
-        help="lock-step runs of each start (default %(default)s)",
-    )
+    add_count(parser, "--horizon", 1, 2, "horizon of refinement; 1 is greedy")
+    add_count(parser, "--repeats", 2, 15, "lock-step runs of each start")
     parser.add_argument("--recordings", type=Path, metavar="DIR", help="keep the recordings of the runs in DIR")
     configure_report(parser)
 

@@ -13,7 +13,7 @@ from tailor.models.export.publishing import leaves
 from tailor.models.features.features import FeatureSpace
 from tailor.models.training import learners, scores
 from tailor.models.training.training import fit
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
@@ -25,9 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     configure_learned(parser, 1000)
     parser.add_argument("--actions", nargs="+", default=["goToPose", "dribbleBall"], help="(default %(default)s)")
     configure_train(parser)
-    parser.add_argument(
-        "--ticks", type=at_least(1, "--ticks"), default=5, help="first ticks of each (n_i, default %(default)s)"
-    )
+    add_count(parser, "--ticks", 1, 5, "first ticks of each, n_i")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.models.features.features import FeatureSpace
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.pages.report import configure_report
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.learning.gathering import random_episodes
@@ -19,20 +19,13 @@ PAPER_EPISODES = 750  # Table 1: training episodes of the simulated soccer robot
 
 def configure_train(parser: argparse.ArgumentParser) -> None:
     """How many episodes to learn from."""
-    parser.add_argument(
-        "--train",
-        type=at_least(40, "--train"),
-        default=PAPER_EPISODES,
-        help="episodes learned from (default %(default)s)",
-    )
+    add_count(parser, "--train", 40, PAPER_EPISODES, "episodes learned from")
 
 
 def configure_learned(parser: argparse.ArgumentParser, episodes: int) -> None:
     """Declare robot, number of fresh episodes, and the flags of the report."""
     parser.add_argument("--robot", default="agilo", help="whose models (default %(default)s)")
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=episodes, help="fresh episodes (default %(default)s)"
-    )
+    add_count(parser, "--episodes", 2, episodes, "fresh episodes")
     configure_report(parser)
 
 

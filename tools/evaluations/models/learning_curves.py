@@ -19,7 +19,7 @@ from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import runs_sha256
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count, at_least
 from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.models import model_rows
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
@@ -88,7 +88,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--methods", nargs="+", choices=METHODS, default=list(METHODS), help="ways of gathering (default: all)")
     add("--sets", type=at_least(2, "--sets"), help=f"sets of models of each point (default {SETS})")
     add("--starts", type=at_least(2, "--starts"), help=f"pairs of runs of each set (default {STARTS})")
-    add("--fresh", type=at_least(20, "--fresh"), default=200, help="random episodes to test on (default %(default)s)")
+    add_count(parser, "--fresh", 20, 200, "random episodes to test on")
     add("--quick", action="store_true", help=f"{QUICK_EPISODES} episodes, {QUICK_SETS} sets, {QUICK_STARTS} starts")
     configure_report(parser)
 

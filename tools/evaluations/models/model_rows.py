@@ -18,7 +18,7 @@ from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.runtime import load_robot
 from tailor.models.training import scores
 from tailor.schemas.installed import models_folder
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns, predicted_by
 from tailor.tools.evaluations.models.floors import floor_columns
@@ -39,8 +39,7 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags that `tailor evaluate models` and its names for the paper's tables share."""
-    parser.add_argument("--episodes", type=at_least(6, "--episodes"), default=1000,
-                        help="fresh episodes of each action (default %(default)s)")  # fmt: skip
+    add_count(parser, "--episodes", 6, 1000, "fresh episodes of each action")
     configure_report(parser)
 
 

@@ -17,7 +17,7 @@ from tailor.models.features.features import FeatureSpace
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_EPISODES
 from tailor.models.training.training import fit
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
@@ -34,9 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     configure_learned(parser, 80)
     parser.add_argument("--data", type=Path, help="random episodes (default: data/ROBOT)")
     parser.add_argument("--scenarios", nargs="+", default=SCENARIOS, help="(default %(default)s)")
-    parser.add_argument(
-        "--ticks", type=at_least(1, "--ticks"), default=2, help="first ticks of each episode (default %(default)s)"
-    )
+    add_count(parser, "--ticks", 1, 2, "first ticks of each episode")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -13,7 +13,7 @@ import numpy as np
 from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count, at_least
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import (
@@ -56,12 +56,10 @@ class Judged:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate ablations`."""
     parser.add_argument("--scenario", default="", help="of the domain (default: its first)")
-    parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=300,
-                        help="starts, each run with every setting (default %(default)s)")  # fmt: skip
+    add_count(parser, "--episodes", 2, 300, "starts, each run with every setting")
     parser.add_argument("--model-episodes", type=at_least(0, "--model-episodes"), default=0, metavar="N",
                         help="train models of N random episodes, with on-policy data and without")  # fmt: skip
-    parser.add_argument("--model-runs", type=at_least(1, "--model-runs"), default=200, metavar="N",
-                        help="runs of their on-policy round (default %(default)s)")  # fmt: skip
+    add_count(parser, "--model-runs", 1, 200, "runs of their on-policy round", metavar="N")
     configure_report(parser)
 
 

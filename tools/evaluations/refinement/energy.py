@@ -11,7 +11,7 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least, finite
+from tailor.tools.cli.number_checks import add_count, finite
 from tailor.tools.evaluations.costs import costs_of
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
@@ -38,9 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--weights", type=finite("--weights"), nargs="+", default=list(WEIGHTS), help="s/J (default %(default)s)"
     )
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=60, help="episodes a weight (default %(default)s)"
-    )
+    add_count(parser, "--episodes", 2, 60, "episodes a weight")
     configure_report(parser)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.outcome import Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
@@ -31,15 +31,8 @@ Found = Mapping[tuple[str, int], TracedRun]
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure1`."""
-    parser.add_argument(
-        "--episodes",
-        type=at_least(2, "--episodes"),
-        default=60,
-        help="starts (default %(default)s)",
-    )
-    parser.add_argument(
-        "--drawn", type=at_least(0, "--drawn"), default=3, help="number of starts to draw (default %(default)s)"
-    )
+    add_count(parser, "--episodes", 2, 60, "starts")
+    add_count(parser, "--drawn", 0, 3, "number of starts to draw")
     configure_report(parser)
 
 

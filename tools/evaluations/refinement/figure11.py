@@ -16,7 +16,7 @@ import numpy as np
 
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.refinement.sweep import Sweep, sweep_of
@@ -40,19 +40,10 @@ REMARKS = (
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor evaluate figure11`."""
-    parser.add_argument(
-        "--episodes", type=at_least(2, "--episodes"), default=10, help="starts at which to sweep (default %(default)s)"
-    )
-    parser.add_argument(
-        "--drawn", type=at_least(0, "--drawn"), default=2, help="number of starts to draw (default %(default)s)"
-    )
-    parser.add_argument("--points", type=at_least(2, "--points"), default=36, help="angles (default %(default)s)")
-    parser.add_argument(
-        "--repeats",
-        type=at_least(1, "--repeats"),
-        default=3,
-        help="runs of each angle, with different noise (default %(default)s)",
-    )
+    add_count(parser, "--episodes", 2, 10, "starts at which to sweep")
+    add_count(parser, "--drawn", 0, 2, "number of starts to draw")
+    add_count(parser, "--points", 2, 36, "angles")
+    add_count(parser, "--repeats", 1, 3, "runs of each angle, with different noise")
     configure_report(parser)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
-from tailor.tools.cli.number_checks import at_least
+from tailor.tools.cli.number_checks import add_count, at_least
 from tailor.tools.evaluations.pages.plots import draw_pairs
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import MIN_UNITS
@@ -68,11 +68,9 @@ def configure(
                         help="scenarios of the domain (default: all; of table3 and table4 the paper's)")  # fmt: skip
     parser.add_argument("--horizon", nargs="+", type=at_least(2, "--horizon"), default=list(horizons), metavar="H",
                         help="horizons of refinement, at least 2 (default %(default)s)")  # fmt: skip
-    parser.add_argument("--episodes", type=at_least(2, "--episodes"), default=episodes,
-                        help="pairs of each scenario (default %(default)s)")  # fmt: skip
+    add_count(parser, "--episodes", 2, episodes, "pairs of each scenario")
     parser.add_argument("--profile", default="", help="profile of the body, e.g. degraded (default: as trained on)")
-    parser.add_argument("--oracle", type=at_least(0, "--oracle"), default=oracle, metavar="N",
-                        help="starts at which choices are simulated (default %(default)s)")  # fmt: skip
+    add_count(parser, "--oracle", 0, oracle, "starts at which choices are simulated", metavar="N")
     parser.add_argument("--points", type=at_least(2, "--points"),
                         help=f"angles that the oracle tries (default {POINTS})")  # fmt: skip
     parser.add_argument("--oracle-runs", type=at_least(2, "--oracle-runs"), metavar="N",
