@@ -11,74 +11,39 @@ from typing import Any
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 
-# name -> (module, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
-EVALUATIONS: dict[str, tuple[str, str]] = {
+# name -> (module of this room, one line of help); the modules offer configure(parser) and run(arguments) -> exit code
+_MODULES = {
     "models": (
-        "tailor.tools.evaluations.models.models",
+        "models.models",
         "any domain: errors of the action models on fresh episodes, coverage of their intervals",
     ),
-    "table1": (
-        "tailor.tools.evaluations.models.table1",
-        "duration models: episodes, mean duration, error on new episodes",
-    ),
-    "table2": ("tailor.tools.evaluations.models.table2", "failure model: confusion matrix over new approaches"),
-    "feature-spaces": (
-        "tailor.tools.evaluations.models.feature_spaces",
-        "Figure 6 b: error in its three feature spaces and one of ours",
-    ),
-    "duration-learners": (
-        "tailor.tools.evaluations.models.duration_learners",
-        "our learners, boosting and WEKA's M5P on the same folds",
-    ),
-    "failure-learners": (
-        "tailor.tools.evaluations.models.failure_learners",
-        "trees, forest, network, SVM, boosting and J48 on the same folds",
-    ),
-    "on-policy": (
-        "tailor.tools.evaluations.models.on_policy",
-        "change by one round of training on the optimiser's own choices",
-    ),
+    "table1": ("models.table1", "duration models: episodes, mean duration, error on new episodes"),
+    "table2": ("models.table2", "failure model: confusion matrix over new approaches"),
+    "feature-spaces": ("models.feature_spaces", "Figure 6 b: error in its three feature spaces and one of ours"),
+    "duration-learners": ("models.duration_learners", "our learners, boosting and WEKA's M5P on the same folds"),
+    "failure-learners": ("models.failure_learners", "trees, forest, network, SVM, boosting and J48 on the same folds"),
+    "on-policy": ("models.on_policy", "change by one round of training on the optimiser's own choices"),
     "learning-curves": (
-        "tailor.tools.evaluations.models.learning_curves",
+        "models.learning_curves",
         "any domain: gain by refinement over the number of episodes, random, on-policy and active",
     ),
-    "refinement": (
-        "tailor.tools.evaluations.refinement.refinement",
-        "any domain: refined against greedy, with every cost in its column",
-    ),
-    "table3": ("tailor.tools.evaluations.refinement.table3", "refined against greedy subgoals, paired by start"),
-    "letters": ("tailor.tools.evaluations.arm.letters", "letters by the arm (Table 3): stopping, greedy and refined"),
-    "table4": ("tailor.tools.evaluations.refinement.table4", "refinement with horizons 1 to 4 over four waypoints"),
-    "ablations": (
-        "tailor.tools.evaluations.refinement.ablations",
-        "refinement with one part off at a time, paired with the default",
-    ),
-    "energy": (
-        "tailor.tools.evaluations.refinement.energy",
-        "duration against energy for different weights of energy",
-    ),
-    "figure1": (
-        "tailor.tools.evaluations.refinement.figure1",
-        "paths, greedy and refined, and the smoothness of transitions between actions",
-    ),
-    "figure11": (
-        "tailor.tools.evaluations.refinement.figure11",
-        "duration over the angle of approach, predicted and simulated",
-    ),
+    "refinement": ("refinement.refinement", "any domain: refined against greedy, with every cost in its column"),
+    "table3": ("refinement.table3", "refined against greedy subgoals, paired by start"),
+    "letters": ("arm.letters", "letters by the arm (Table 3): stopping, greedy and refined"),
+    "table4": ("refinement.table4", "refinement with horizons 1 to 4 over four waypoints"),
+    "ablations": ("refinement.ablations", "refinement with one part off at a time, paired with the default"),
+    "energy": ("refinement.energy", "duration against energy for different weights of energy"),
+    "figure1": ("refinement.figure1", "paths, greedy and refined, and the smoothness of transitions between actions"),
+    "figure11": ("refinement.figure11", "duration over the angle of approach, predicted and simulated"),
     "assertion": (
-        "tailor.tools.evaluations.assertion.assertion",
+        "assertion.assertion",
         "success among objects: without and with asserted subgoals, and by hand-made geometry",
     ),
-    "figure15": (
-        "tailor.tools.evaluations.assertion.figure15",
-        "cost of an asserted subgoal by place, and the runs without and with it",
-    ),
-    "figure16": ("tailor.tools.evaluations.assertion.figure16", "approaches with and without subgoal assertion"),
-    "live": (
-        "tailor.tools.evaluations.live.live",
-        "live runs over the bus against lock-step runs from the same starts",
-    ),
+    "figure15": ("assertion.figure15", "cost of an asserted subgoal by place, and the runs without and with it"),
+    "figure16": ("assertion.figure16", "approaches with and without subgoal assertion"),
+    "live": ("live.live", "live runs over the bus against lock-step runs from the same starts"),
 }
+EVALUATIONS = {name: (f"tailor.tools.evaluations.{module}", text) for name, (module, text) in _MODULES.items()}
 FOR_ANY_DOMAIN = ("refinement", "models", "learning-curves", "ablations")  # those that the paper's tables are names for
 ALL = "all"
 Chosen = tuple[str, Any, argparse.Namespace]  # an evaluation: name, module, settings
