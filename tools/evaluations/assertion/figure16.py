@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from tailor.executive.interfaces.reasons import Reason
-from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.cli.number_checks import add_count
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.assertion.assertion import AFTER, BEFORE, variants
+from tailor.tools.evaluations.outcome import Outcome, Task
 from tailor.tools.evaluations.pages.plots import draw_shares
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.paired_comparison import compare, share_interval
@@ -32,38 +31,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate and publish the report; 0 if at least 98 % succeed and at most 10 % have needless subgoals."""
-    row = evaluate(arguments)
+    seeds = seeds_of("soccer", arguments)
+    task = Task("soccer", "approach-dribble", "", arguments.zoo, GOAL, DRAWN)
+    starts = seeds.starts(arguments.episodes)
+    found = run_all(task, variants()[:2], starts, arguments.jobs, arguments.store, "figure 16")
+    row = summary(found[BEFORE], found[AFTER])
     plots = {}
     if arguments.report is not None:
         plots["success of approaches"] = draw_shares(row, arguments.report / "figure16.png")
-    publish_report(
-        Report(
-            "figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots, seeds_of("soccer", arguments).provenance
-        ),
-        arguments.json,
-        arguments.report,
-    )
+    report = Report("figure16", "Figure 16: subgoal assertion", [row], [PAPER], plots, seeds.provenance)
+    publish_report(report, arguments)
     return 0 if row["success_after_pct"] >= 98 and row["needless_pct"] <= 10 else 1
-
-
-def evaluate(arguments: argparse.Namespace, settings: RefinementSettings | None = None) -> dict[str, Any]:
-    """The row of figures: every approach once as it is and once with assertion."""
-    seeds = seeds_of("soccer", arguments).starts(arguments.episodes)
-    task = assertion_task(arguments.zoo)
-    found = run_all(task, variants(settings), seeds, arguments.jobs, arguments.store, "figure 16")
-    return summary(found["blind"], found["asserted"])
-
-
-def assertion_task(zoo: str) -> Task:
-    """Approaches of the ball alone, to a goal state of each start's own."""
-    return Task("soccer", "approach-dribble", "", zoo, GOAL, DRAWN)
-
-
-def variants(settings: RefinementSettings | None = None) -> tuple[Variant, Variant]:
-    """Without assertion ("blind": nothing is predicted to fail) and with it ("asserted")."""
-    base = settings or RefinementSettings()
-    blind = replace(base, p_fail_max=1.0, p_fail_assert=1.0, risk_cost_s=0.0)
-    return Variant("blind", blind), Variant("asserted", base)
 
 
 def succeeded(outcome: Outcome) -> bool:
