@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     rows = rows_of(found)
     plots = {} if arguments.report is None else _picture(arguments.report, seeds.first, arguments.zoo)
     report = Report("letters", "Letters by the arm", rows, (PAPER, *REMARKS), plots, seeds.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0 if is_fastest(next(row for row in rows if row["mode"] == REFINED.name)) else 1
 
 

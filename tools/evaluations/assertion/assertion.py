@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append({"scenario": scenario, **row(found, starts)})
     remarks = (*REMARKS, *budget_remark(arguments.tick_ms))
     report = Report("assertion", "Subgoal assertion among objects", rows, remarks, {}, seeds.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0 if all(map(reached, rows)) else 1
 
 

@@ -47,9 +47,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run, draw and publish the report; 0 if more approaches succeed with their subgoals than without."""
     task = Task("soccer", SCENARIO, zoo=arguments.zoo)
-    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    found = run_all(task, COMPARED, seeds, arguments.jobs, arguments.store, "figure 15")
-    asserted = [seed for seed in seeds if found[AFTER][seed].asserted]
+    seeds = seeds_of(task.domain, arguments)
+    starts = seeds.starts(arguments.episodes)
+    found = run_all(task, COMPARED, starts, arguments.jobs, arguments.store, "figure 15")
+    asserted = [seed for seed in starts if found[AFTER][seed].asserted]
     if not asserted:
         raise UsageError(f"--episodes {arguments.episodes}: no subgoal was asserted, expected more starts")
     rows = [_summary(found, asserted)]
@@ -61,11 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure15-{seed}.png"
             plots[f"search space of the subgoal and both runs, start {seed}"] = _draw(task, seed, ground, path)
     title = "Figure 15: the search space of an asserted subgoal"
-    publish_report(
-        Report("figure15", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
-        arguments.json,
-        arguments.report,
-    )
+    publish_report(Report("figure15", title, rows, REMARKS, plots, seeds.provenance), arguments)
     return 0 if rows[0]["success_after_pct"] > rows[0]["success_before_pct"] else 1
 
 

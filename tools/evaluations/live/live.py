@@ -68,21 +68,22 @@ def run(arguments: argparse.Namespace) -> int:
       0 if live runs end like those in lock-step and neither test finds a difference, 130 if interrupted, else 1.
     """
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
-    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    repeats = _lockstep(task, arguments, seeds)
+    seeds = seeds_of(task.domain, arguments)
+    starts = seeds.starts(arguments.episodes)
+    repeats = _lockstep(task, arguments, starts)
     repeated = {seed: some.pop() for seed, some in repeats.items()}
     stop = stop_on_signals()
-    found = {LIVE: _live(task, arguments, seeds, stop), REPEATED: repeated}
+    found = {LIVE: _live(task, arguments, starts, stop), REPEATED: repeated}
     if stop.requested:
         return 130
     rows = [_row(name, arguments.horizon, runs, repeats) for name, runs in found.items()]
     plots = {}
     if arguments.report is not None:
-        starts = {name: starts_of(runs, repeats) for name, runs in found.items()}
-        plots["durations and differences"] = draw_agreement(starts, MARGIN_PCT, arguments.report / "live.png")
+        pairs = {name: starts_of(runs, repeats) for name, runs in found.items()}
+        plots["durations and differences"] = draw_agreement(pairs, MARGIN_PCT, arguments.report / "live.png")
     title = f"Live over the bus against lock-step: {arguments.scenario}"
-    shown, provenance = [with_thresholds(row) for row in rows], seeds_of("soccer", arguments).provenance
-    publish_report(Report("live", title, shown, REMARKS, plots, provenance), arguments.json, arguments.report)
+    shown = [with_thresholds(row) for row in rows]
+    publish_report(Report("live", title, shown, REMARKS, plots, seeds.provenance), arguments)
     live = rows[0]
     alike = min(live["p_value"], live["p_rank"]) > 0.05
     return 0 if alike and live["achieved_pct"] >= live["achieved_lockstep_pct"] - 5 else 1

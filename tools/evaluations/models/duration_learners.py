@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     rows = [row for action, space in spaces.items() for row in _rows(action, space, arguments)]
     remarks = [f"{arguments.train} training episodes, {arguments.ticks} ticks each, seed {arguments.seed}; fresh runs"]
     report = Report("duration-learners", "Duration learners", rows, remarks, {}, arguments.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0
 
 

@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     ratio = f"a missed failure costs {learners.COST_RATIO:g} false alarms"
     remarks = [f"{arguments.action}: {arguments.train} training episodes, one example each; {ratio}; fresh runs"]
     report = Report("failure-learners", "Failure learners", rows, remarks, {}, arguments.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0
 
 

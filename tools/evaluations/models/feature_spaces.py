@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
     plots = _plots(rows, test, arguments.report) if arguments.report else {}
     report = Report("feature-spaces", "Figure 6 b: feature spaces", rows, remarks, plots, arguments.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     errors = [row["mae_s"] for row in rows[:3]]
     return 0 if errors == sorted(errors, reverse=True) else 1
 

@@ -123,7 +123,7 @@ def run(arguments: argparse.Namespace) -> int:
     title = f"Learning curves of the gain: {domain}, {settings.scenario}"
     about = {"first_seed": settings.seed, "seed_derived": arguments.seed is None, "source_sha256": runs_sha256(domain)}
     provenance = {**about, "models_sha256": "of each set its own"}
-    publish_report(Report("learning-curves", title, rows, REMARKS, plots, provenance), arguments.json, arguments.report)
+    publish_report(Report("learning-curves", title, rows, REMARKS, plots, provenance), arguments)
     return 0
 
 

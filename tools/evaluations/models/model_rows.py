@@ -49,7 +49,7 @@ def publish(name: str, title: str, made: Sequence[Row], remarks: Sequence[str], 
     shown = [{key: value for key, value in row.items() if key not in ("predicted_s", "observed_s")} for row in made]
     domain = arguments.domain or next(iter(made))["domain"]
     provenance = seeds_of(domain, arguments).provenance
-    publish_report(Report(name, title, shown, remarks, plots, provenance), arguments.json, arguments.report)
+    publish_report(Report(name, title, shown, remarks, plots, provenance), arguments)
 
 
 def rows(domain: str, arguments: argparse.Namespace, floors: bool = True) -> list[Row]:

@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
     ]
     report = Report("on-policy", "One on-policy round", rows, remarks, {}, arguments.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0
 
 

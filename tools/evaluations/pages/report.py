@@ -54,18 +54,18 @@ def configure_report(parser: argparse.ArgumentParser) -> None:
                         help="domain, e.g. soccer; an evaluation of another one does not run")  # fmt: skip
 
 
-def publish_report(report: Report, as_json: bool, folder: Path | None) -> None:
+def publish_report(report: Report, arguments: argparse.Namespace) -> None:
     """Print the report, and write its page and its JSON if a folder is given.
 
     Args:
       report: Result of an evaluation.
-      as_json: Print JSON instead of a table.
-      folder: Of pages; created if missing.
+      arguments: Parsed flags of `configure_report`.
     """
+    folder: Path | None = arguments.report
     report = _with_seeds(report)
     content = {"name": report.name, "title": report.title, "rows": [_plain(row) for row in report.rows]}
     text = json.dumps({**content, "remarks": list(report.remarks), "provenance": dict(report.provenance)}, indent=1)
-    if as_json:
+    if arguments.json:
         print(text)
     else:
         _print(report)

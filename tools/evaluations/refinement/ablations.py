@@ -76,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.model_episodes:
         rows += _without_policy(domain, starts, arguments)
     title = f"Ablations of refinement: {domain}, {arguments.scenario}"
-    publish_report(Report("ablations", title, rows, REMARKS, {}, seeds.provenance), arguments.json, arguments.report)
+    publish_report(Report("ablations", title, rows, REMARKS, {}, seeds.provenance), arguments)
     return 0 if all(made["improvement_more_ci95"][0] <= 0 for made in rows) else 1
 
 

@@ -47,17 +47,14 @@ def run(arguments: argparse.Namespace) -> int:
     if len(arguments.weights) < 2:
         raise UsageError(f"--weights {arguments.weights}: expected at least two, the first to compare with")
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
-    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    wanted = [(weight, seed) for seed in seeds for weight in arguments.weights]
+    seeds = seeds_of(task.domain, arguments)
+    starts = seeds.starts(arguments.episodes)
+    wanted = [(weight, seed) for seed in starts for weight in arguments.weights]
     costs = in_order(completed(cost_of, [(task, weight, seed) for weight, seed in wanted], arguments.jobs))
     found = dict(zip(wanted, costs, strict=True))
-    rows = [_row(weight, arguments.weights[0], seeds, found) for weight in arguments.weights]
+    rows = [_row(weight, arguments.weights[0], starts, found) for weight in arguments.weights]
     remarks = [f"{arguments.scenario}: paired with weight {arguments.weights[0]:g}; energy is the work of the wheels"]
-    publish_report(
-        Report("energy", "Time against energy", rows, remarks, {}, seeds_of("soccer", arguments).provenance),
-        arguments.json,
-        arguments.report,
-    )
+    publish_report(Report("energy", "Time against energy", rows, remarks, {}, seeds.provenance), arguments)
     largest = max(rows, key=lambda row: row["joule_worth_s"])
     return 0 if largest["energy_ci95"][0] > 0 else 1
 

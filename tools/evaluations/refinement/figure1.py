@@ -38,26 +38,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, draw and publish the report; 0 if refined runs are faster in the mean."""
-    seeds = seeds_of("soccer", arguments).starts(arguments.episodes)
+    seeds = seeds_of("soccer", arguments)
+    starts = seeds.starts(arguments.episodes)
+    drawn = starts[: arguments.drawn]
     task = Task("soccer", "approach-dribble", "", arguments.zoo)
     variants = [Variant(name, replace(RefinementSettings(), horizon=h)) for name, h in MODES]
-    found = trace_all(task, variants, seeds, arguments.jobs, "figure 1")
-    rows = [_row(name, horizon, found, seeds) for name, horizon in MODES]
-    rows += [_example(name, horizon, found[name, s]) for s in seeds[: arguments.drawn] for name, horizon in MODES]
-    plots = {} if arguments.report is None else _draw(found, seeds[: arguments.drawn], arguments.report)
+    found = trace_all(task, variants, starts, arguments.jobs, "figure 1")
+    rows = [_row(name, horizon, found, starts) for name, horizon in MODES]
+    rows += [_example(name, horizon, found[name, s]) for s in drawn for name, horizon in MODES]
+    plots = {} if arguments.report is None else _draw(found, drawn, arguments.report)
     remarks = [
         f"Drawn: the first {arguments.drawn} starts of the evaluation, not selected. Lines stand across the robot's "
         "heading, ten a second; their length is its speed. Disc: ball at the start; circle: at the end; + subgoal that "
         "with a free parameter; * target.",
         f"slow_s: time at less than {SLOW_MPS} m/s between the first and the last action",
     ]
-    publish_report(
-        Report(
-            "figure1", "Figure 1: greedy and refined", rows, remarks, plots, seeds_of("soccer", arguments).provenance
-        ),
-        arguments.json,
-        arguments.report,
-    )
+    report = Report("figure1", "Figure 1: greedy and refined", rows, remarks, plots, seeds.provenance)
+    publish_report(report, arguments)
     return 0 if rows[1]["improvement_pct"] > 0 else 1
 
 

@@ -50,8 +50,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep, draw and publish the report; 0 if the model's best angle is faster than greedy's in simulation."""
     task = Task(*TASK, "", arguments.zoo)
-    seeds = seeds_of(task.domain, arguments).starts(arguments.episodes)
-    sweeps = [sweep for seed in seeds if (sweep := _swept(task, seed, arguments)) is not None]
+    seeds = seeds_of(task.domain, arguments)
+    starts = seeds.starts(arguments.episodes)
+    sweeps = [sweep for seed in starts if (sweep := _swept(task, seed, arguments)) is not None]
     if not sweeps:
         raise UsageError(f"--episodes {arguments.episodes}: no start had a free angle and ended well, expected more")
     rows = [_row(sweep) for sweep in sweeps]
@@ -62,11 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
             path = arguments.report / f"figure11-{sweep.seed}.png"
             plots[f"predicted and simulated durations, start {sweep.seed}"] = _draw(task, sweep, path)
     title = "Figure 11: durations over the angle of approach"
-    publish_report(
-        Report("figure11", title, rows, REMARKS, plots, seeds_of("soccer", arguments).provenance),
-        arguments.json,
-        arguments.report,
-    )
+    publish_report(Report("figure11", title, rows, REMARKS, plots, seeds.provenance), arguments)
     return 0 if rows[-1]["simulated_at_model_best_s"] < rows[-1]["simulated_at_greedy_s"] else 1
 
 

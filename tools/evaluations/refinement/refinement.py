@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace, preset: Preset | None = None) -> int:
     remarks += [ORACLE_REMARK] if arguments.oracle else []
     over = over_models([row for row in rows if row.get("model", "").startswith("trained")])
     report = Report(named.name, f"{named.title}: {domain}", [*rows, *over], remarks, plots, seeds.provenance)
-    publish_report(report, arguments.json, arguments.report)
+    publish_report(report, arguments)
     return 0 if all(is_better(row) for row in rows) else 1
 
 

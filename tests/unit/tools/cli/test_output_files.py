@@ -83,11 +83,15 @@ def checked(report, monkeypatch):
     check_driver.run(parser.parse_args(["agilo", "--report", str(report)]))
 
 
+def _publish(folder):
+    publish_report(Report("t", "T", (), ["long"], {}, {}), argparse.Namespace(json=True, report=folder))
+
+
 WRITERS = {
     "letters": ("x.png", lambda path, _: letters.draw_letters([[letter()]], path)),
     "bars": ("x.png", lambda path, _: reports.bars(path, ["a"], [1.0], [[0.5, 1.5]])),
     "pairs": ("x.png", lambda path, _: plots.draw_pairs([2.0, 3.0], [1.0, 2.0], path)),
-    "report": ("t.html", lambda path, _: publish_report(Report("t", "T", (), ["long"], {}, {}), True, path.parent)),
+    "report": ("t.html", lambda path, _: _publish(path.parent)),
     "overview": ("index.html", lambda path, _: overview.write_overview(path.parent, ["table1"] * 200)),
     "demo": ("paths.png", lambda path, _: demo._write([recorded_track("greedy", Path(GOLDEN))] * 2, path.parent)),
     "check-driver": ("x.md", checked),

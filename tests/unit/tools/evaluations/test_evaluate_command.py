@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import re
@@ -38,13 +39,16 @@ def module(name, domains, run):
     def really_run(arguments):
         CALLS.append(name)
         assert getattr(arguments, "places", []) == []
-        publish_report(
-            Report(name, f"The {name} one", [{"scenario": name, "n": 3}], (), {}, {}), arguments.json, arguments.report
-        )
+        publish_report(Report(name, f"The {name} one", [{"scenario": name, "n": 3}], (), {}, {}), arguments)
         return run()
 
     made.configure, made.run = configure, really_run
     return made
+
+
+def flags(folder):
+    """As parsed of --json --report `folder`."""
+    return argparse.Namespace(json=True, report=folder)
 
 
 def refuse():
@@ -162,11 +166,11 @@ def test_the_overview_links_what_there_is_and_names_what_is_missing(tmp_path, ca
 
 def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     rows = [{"scenario": f"row-{k}"} for k in range(10)]
-    publish_report(Report("first", "The first one", rows, (), {}, {}), True, tmp_path)
+    publish_report(Report("first", "The first one", rows, (), {}, {}), flags(tmp_path))
     text = write_overview(tmp_path, ["first"]).read_text()
     assert [k for k in range(10) if f"row-{k}" in text] == [0, 1, 2, 3, 4, 9]
     assert text.index("row-4") < text.index("4 rows are on its page") < text.index("row-9")
-    publish_report(Report("first", "The first one", rows[:6], (), {}, {}), True, tmp_path)
+    publish_report(Report("first", "The first one", rows[:6], (), {}, {}), flags(tmp_path))
     assert "rows are on its page" not in write_overview(tmp_path, ["first"]).read_text()
 
 
@@ -195,13 +199,13 @@ def test_the_overview_shows_the_first_rows_and_the_last(tmp_path):
     ],
 )
 def test_the_overview_tells_what_a_row_is_of_and_what_a_gain_costs(row, titles, tmp_path):
-    publish_report(Report("first", "The first one", [row], (), {}, {}), True, tmp_path)
+    publish_report(Report("first", "The first one", [row], (), {}, {}), flags(tmp_path))
     text = write_overview(tmp_path, ["first"]).read_text()
     assert [title for title in titles if f">{title}<" not in text] == []
 
 
 def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
-    publish_report(Report("first", "The first one", [{"scenario": "one"}], (), {}, {}), True, tmp_path)
+    publish_report(Report("first", "The first one", [{"scenario": "one"}], (), {}, {}), flags(tmp_path))
     text = write_overview(tmp_path, ["first"]).read_text()
     assert '<meta name="viewport" content="width=device-width' in text
     assert re.search(r"first, \d{4}-\d\d-\d\d \d\d:\d\d UTC", text)
@@ -209,7 +213,7 @@ def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
 
 def test_a_page_that_was_interrupted_does_not_pass_for_the_one_before(tmp_path, monkeypatch):
     made = Report("first", "The first one", [{"n": 3}], (), {}, {})
-    publish_report(made, True, tmp_path)
+    publish_report(made, flags(tmp_path))
     assert page_is_there(tmp_path, "first")
 
     def interrupted(*_, **__):
@@ -219,9 +223,9 @@ def test_a_page_that_was_interrupted_does_not_pass_for_the_one_before(tmp_path, 
         with monkeypatch.context() as patched:
             patched.setattr(Path, name, interrupted)
             with pytest.raises(KeyboardInterrupt):
-                publish_report(made, True, tmp_path)
+                publish_report(made, flags(tmp_path))
         assert not page_is_there(tmp_path, "first")
-    publish_report(made, True, tmp_path)
+    publish_report(made, flags(tmp_path))
     assert page_is_there(tmp_path, "first")
 
 
@@ -250,8 +254,7 @@ def test_what_is_no_number_is_a_dash_in_a_table(value, text):
 def test_what_is_no_number_is_null_in_json(capsys):
     publish_report(
         Report("first", "One", [{"p": float("nan"), "ci95": (float("inf"), 1.0), "n": 2, "sure": True}], (), {}, {}),
-        True,
-        None,
+        flags(None),
     )
     said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     assert said["rows"] == [{"p": None, "ci95": [None, 1.0], "n": 2, "sure": True}]
