@@ -11,6 +11,7 @@ from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.selection_flags import configure_selection
 
 MAX_S = 1e10  # limit of the clock in the file
 
@@ -30,14 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="seconds after the first message, exclusive (default: the end)",
     )
-    add(
-        "--topics",
-        action="append",
-        default=[],
-        metavar="WORDS",
-        help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
-    )
-    add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
+    configure_selection(parser)
     add("--json", action="store_true", help="print the numbers of messages as JSON")
 
 

@@ -28,6 +28,7 @@ from tailor.schemas.messages import Clock
 from tailor.schemas.topics import TOPICS
 from tailor.tools.cli.keyboard import Keyboard
 from tailor.tools.cli.number_checks import check_within
+from tailor.tools.cli.selection_flags import configure_selection
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.recordings.playback import Publishers, RecordingPart, remapping
 from tailor.tools.recordings.substitution import OMITTED, SUBSTITUTES, armed_for, live_executive
@@ -55,14 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--start", type=float, default=0.0, metavar="S", help="begin this long after the first message")
     add("--duration", type=float, default=0.0, metavar="S", help="end after this much recorded time")
     add("--loop", action="store_true", help="repeat until stopped")
-    add(
-        "--topics",
-        action="append",
-        default=[],
-        metavar="WORDS",
-        help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
-    )
-    add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
+    configure_selection(parser)
     add(
         "--remap",
         action="append",

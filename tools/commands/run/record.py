@@ -34,6 +34,7 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.plain_text import note, plain
+from tailor.tools.cli.selection_flags import configure_selection
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.recordings.recorder_bus import RecorderBus
 
@@ -48,14 +49,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor record`."""
     add = parser.add_argument
     add("-o", "--output", metavar="FILE", help="new file (default: tailor-DATE-TIME.mcap)")
-    add(
-        "--topics",
-        action="append",
-        default=[],
-        metavar="WORDS",
-        help="only these: odom, 'agilo/*', a ROS type; or a,b,c",
-    )
-    add("--exclude", action="append", default=[], metavar="WORDS", help="all except these")
+    configure_selection(parser)
     add("--max-size", type=float, metavar="MB", default=0.0, help="begin a new file at this size")
     add("--max-duration", type=float, metavar="S", default=0.0, help="begin a new file after this time")
     add(
