@@ -16,7 +16,7 @@ from pathlib import Path
 
 from tailor.tools.soak.faults.kinds import FAULTS
 from tailor.tools.soak.faults.scene import FaultRecord, Scene
-from tailor.tools.soak.judging.robots import ROBOTS
+from tailor.tools.soak.judging.robots import ROBOTS, Robot
 from tailor.tools.soak.judging.violations import Invariant, Violation
 from tailor.tools.soak.party import Party, Result
 from tailor.tools.soak.schedule import Planned
@@ -51,7 +51,7 @@ class Soak:
         self._began_s = time.monotonic()
         self._stalls = Stalls()
         self._startup_s = START_S
-        self.parties = {robot.name: self._party(robot.name, folder) for robot in ROBOTS}
+        self.parties = {robot.name: self._party(robot, folder) for robot in ROBOTS}
 
     def run(self, planned: list[Planned], duration_s: float) -> Result:
         """Start the systems, inject the planned faults, end the systems."""
@@ -91,11 +91,9 @@ class Soak:
         self._startup_s = self._elapsed_s()
         self._began_s = time.monotonic()
 
-    def _party(self, robot: str, folder: Path) -> Party:
-        def report(now_ns: int, invariant: Invariant, detail: str) -> None:
-            self._violated(robot, now_ns, invariant, detail)
-
-        system = System(next(each for each in ROBOTS if each.name == robot), folder, report)
+    def _party(self, robot: Robot, folder: Path) -> Party:
+        report = partial(self._violated, robot.name)
+        system = System(robot, folder, report)
         return Party(system, People(system, tasks_of(system, self._draw)), Watch(system, report))
 
     def _start(self, party: Party) -> None:
@@ -126,7 +124,8 @@ class Soak:
             now_ns = time.monotonic_ns()
             party.watch.poll(now_ns)
             if party.record is not None:
-                self._follow(party, party.record, now_ns)
+                report = partial(self._violated, party.record.robot)
+                follow(party.record, party.system, party.people, now_ns, report)
             if party.watch.launcher_gone:
                 self._lost(party, now_ns)
         self._progress(self._elapsed_s(), "")
@@ -141,12 +140,6 @@ class Soak:
         if party.record is not None:
             party.record.notes.append(f"{line} at {self._elapsed_s():.1f} s")
         self._progress(self._elapsed_s(), line)
-
-    def _follow(self, party: Party, record: FaultRecord, now_ns: int) -> None:
-        def report(now_ns: int, invariant: Invariant, detail: str) -> None:
-            self._violated(record.robot, now_ns, invariant, detail)
-
-        follow(record, party.system, party.people, now_ns, report)
 
     def _lost(self, party: Party, now_ns: int) -> None:
         """A launcher has ended by itself: people start it again."""

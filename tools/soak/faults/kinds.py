@@ -29,10 +29,6 @@ def _then_kill(scene: Scene, first: Callable[[Scene], None], name: str) -> None:
     processes.kill(scene, (name,))
 
 
-def _intrude(scene: Scene, kind: str) -> None:
-    scene.intrude(kind)
-
-
 HARMLESS: dict[str, Fault] = {
     "executive frozen 0.2 s": Fault(3, partial(processes.freeze, name="executive", seconds=0.2)),
     "simulator frozen 0.2 s": Fault(3, partial(processes.freeze, name="sim", seconds=0.2)),
@@ -60,7 +56,7 @@ _ROWS = {
 _JUNK_ROW, _FLOOD_ROW = 18, 17
 _INTRUSIONS = {
     f"stranger: {kind}": Fault(
-        _FLOOD_ROW if kind.startswith("flood") else _ROWS.get(kind, _JUNK_ROW), partial(_intrude, kind=kind)
+        _FLOOD_ROW if kind.startswith("flood") else _ROWS.get(kind, _JUNK_ROW), partial(Scene.intrude, kind=kind)
     )
     for kind in KINDS
 }

@@ -89,4 +89,4 @@ def _call(scene: Scene, service: str, argument: dict[str, object] | dict[str, fl
 
 def new_goal(scene: Scene) -> None:
     """The goal is set anew while the robot pursues it."""
-    scene.people.change_goal()
+    scene.people.set_goal()

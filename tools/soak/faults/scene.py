@@ -21,6 +21,8 @@ from tailor.tools.soak.systems.system import System, Wait
 
 BURN = "while True: pass"
 INTRUDER_S = 15.0
+BACK_S = 3.0
+BURNERS = 4
 
 
 @dataclass(slots=True)
@@ -62,9 +64,9 @@ class Scene:
         """Let time pass."""
         self.wait(lambda: False, seconds)
 
-    def expect_back(self, condition: Callable[[], bool], limit_s: float = 3.0) -> None:
-        """The system is complete again, is heard, and the condition holds, within the limit and a start-up."""
-        self.record.back_when, self.record.back_limit_s = condition, limit_s + self.startup_s
+    def expect_back(self, condition: Callable[[], bool]) -> None:
+        """The system is complete again, is heard, and the condition holds, within BACK_S and a start-up."""
+        self.record.back_when, self.record.back_limit_s = condition, BACK_S + self.startup_s
 
     def begin(self) -> None:
         """The fault itself comes now, after what was prepared for it."""
@@ -119,9 +121,9 @@ class Scene:
         return bool(result["refused"])
 
     @contextmanager
-    def burners(self, count: int = 4) -> Iterator[None]:
+    def burners(self) -> Iterator[None]:
         """CPU burners."""
-        children = [Child("burner", [sys.executable, "-c", BURN]) for _ in range(count)]
+        children = [Child("burner", [sys.executable, "-c", BURN]) for _ in range(BURNERS)]
         try:
             yield
         finally:

@@ -83,13 +83,10 @@ class People:
             if long_ago and view.driver.mode != "armed" and system.judge.at_rest_since(now_ns, QUIET_NS):
                 self.arm()
         elif self._goal_ns and now_ns > self._goal_ns and view.driver.mode == "armed":
-            self._set_goal()
+            self.set_goal()
 
-    def change_goal(self) -> None:
-        """Set the next goal although the last one is pursued."""
-        self._set_goal()
-
-    def _set_goal(self) -> None:
+    def set_goal(self) -> None:
+        """Set the next goal, also while the last one is pursued."""
         accepted, _ = self._system.call("exec/goal", self._tasks.goal())
         if accepted:
             self._goal_ns, self._set_ns = 0, self._now()
