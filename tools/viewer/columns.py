@@ -7,7 +7,7 @@ that repeat their neighbours on both sides are left out: the page shows a sample
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import groupby
+from itertools import count, groupby
 from typing import Any
 
 import numpy as np
@@ -53,7 +53,7 @@ def _blocks(kind: str, events: list[Event]) -> Iterator[Block]:
             "kind": kind,
             "length": len(at),
             "at": _column(at, TIME_DIGITS),
-            "like": _form(like),
+            "like": _numbered(like, count()),
             "columns": columns,
         }
 
@@ -91,12 +91,8 @@ def _walked(value: Any, numbers: list[float | None]) -> Any:
     return "number"
 
 
-def _form(form: Any) -> Any:
-    """The form as JSON, with columns numbered from 0."""
-    return _numbered(form, iter(range(1 << 31)))
-
-
 def _numbered(form: Any, numbers: Iterator[int]) -> Any:
+    """The form as JSON, with the next numbers for its columns."""
     if form == "number":
         return next(numbers)
     kind, *parts = form

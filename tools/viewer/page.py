@@ -58,17 +58,14 @@ def page(title: str, events: Iterable[Event], live: bool = False, stop_token: st
         "rows": rows,
         "samples": samples,
     }
-    return assembled("page.html", STYLES, SCRIPTS, {"TITLE": html.escape(title)}, data)
+    return assembled("page.html", SCRIPTS, {"TITLE": html.escape(title)}, data)
 
 
-def assembled(
-    template: str, styles: Iterable[str], scripts: Iterable[str], texts: Mapping[str, str], data: Mapping[str, Any]
-) -> str:
+def assembled(template: str, scripts: Iterable[str], texts: Mapping[str, str], data: Mapping[str, Any]) -> str:
     """A template with everything that it needs in it.
 
     Args:
       template: Name of the asset with places @NAME@.
-      styles: Names of style sheets.
       scripts: Names of scripts; together they form one module.
       texts: Text, as HTML, for other places by name.
       data: What the scripts read.
@@ -76,7 +73,7 @@ def assembled(
     embedded = json.dumps(data, allow_nan=False, separators=(",", ":"))
     parts = {
         **texts,
-        "STYLE": "\n".join(map(_asset, styles)),
+        "STYLE": "\n".join(map(_asset, STYLES)),
         "SCRIPT": "\n".join(map(_asset, scripts)),
         # no string of a recording may end the script element
         "DATA": embedded.replace("<", "\\u003c"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Mapping, Sequence
 
-from tailor.tools.viewer.page import STYLES, assembled, page
+from tailor.tools.viewer.page import assembled, page
 from tailor.tools.viewer.timeline import Event
 
 SCRIPTS = ("elements.js", "player.js", "sidebyside.js")
@@ -21,4 +21,4 @@ def side_by_side(title: str, caption: str, runs: Mapping[str, Sequence[Event]]) 
     """
     pages = [{"title": name, "page": page(name, events, framed=True)} for name, events in runs.items()]
     texts = {"TITLE": html.escape(title), "CAPTION": html.escape(caption)}
-    return assembled("sidebyside.html", STYLES, SCRIPTS, texts, {"pages": pages})
+    return assembled("sidebyside.html", SCRIPTS, texts, {"pages": pages})

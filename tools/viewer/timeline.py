@@ -168,8 +168,6 @@ class RunTimeline:
         if shown is None:
             return []
         rows = self._sampled(at_s, source, {**event_fields.scene(shown), "index": self._action[0]})
-        if not rows:
-            return []
         outlines = ((f"outline {source} {name}", each) for name, each in shown.outlines.items())
         return [row for kind, each in outlines for row in self._outline(kind, each)] + rows
 
@@ -215,7 +213,8 @@ class RunTimeline:
         return since_s >= STATE_GAP_S or since_s < 0.0  # a recording of a clock that was set back goes on
 
     def _sampled(self, at_s: float, kind: str, fields: Fields) -> Rows:
-        if not fields or not self._due(at_s, kind):
+        """A sample, which is due."""
+        if not fields:
             return []
         self._sampled_s[kind] = at_s
         return [(kind, fields)]
