@@ -9,6 +9,8 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+MAX_PLANS = 1_000_000  # about 1 GB of memory
+GROUND_LIMIT = 300_000  # steps: two seconds of CPU, more than a robot may take
 CHECKS_PER_LOOK = 256  # checks of the budget from one look at the memory to the next
 
 

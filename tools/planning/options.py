@@ -14,10 +14,9 @@ from tailor.executive.planning.flaws.flaw_orders import NAMED
 from tailor.executive.planning.flaws.ranking import NAMES
 from tailor.executive.planning.pddl.syntax.errors import shortened
 from tailor.schemas.errors import UsageError
+from tailor.tools.plan_search.limits import GROUND_LIMIT, MAX_PLANS
 
 MAX_DIGITS = 18  # of a number: Python refuses to read thousands
-MAX_PLANS = 1_000_000  # about 1 GB of memory
-GROUND_LIMIT = 300_000  # steps: two seconds of CPU, more than a robot may take
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

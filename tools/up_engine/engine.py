@@ -25,7 +25,6 @@ from unified_planning.plans import PlanKind
 from tailor.executive.planning import (
     AnytimeSearch,
     Result,
-    Search,
     Settings,
     UndecidedError,
     Unsupported,
@@ -34,13 +33,13 @@ from tailor.executive.planning import (
 )
 from tailor.executive.planning.settings import MAX_TICK_S, MIN_TICK_S
 from tailor.schemas.errors import UsageError
-from tailor.tools.plan_search.limits import Limits
+from tailor.tools.plan_search.limits import GROUND_LIMIT, MAX_PLANS, Limits
+from tailor.tools.plan_search.sources import built_in
 from tailor.tools.up_engine import NAME
 from tailor.tools.up_engine.supported import supported_kind
 from tailor.tools.up_engine.translation import Translation
 
 Status = PlanGenerationResultStatus
-GROUND_LIMIT = 300_000  # steps: two seconds of CPU, as on the command line
 PLANS = (PlanKind.PARTIAL_ORDER_PLAN, PlanKind.SEQUENTIAL_PLAN, PlanKind.TIME_TRIGGERED_PLAN)
 
 
@@ -57,7 +56,7 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
         OneshotPlannerMixin.__init__(self)
         AnytimePlannerMixin.__init__(self)
         self._memory_mb = memory_mb
-        self._settings = {"ground_limit": GROUND_LIMIT, "node_limit": 1_000_000, **settings}
+        self._settings = {"ground_limit": GROUND_LIMIT, "node_limit": MAX_PLANS, **settings}
 
     @property
     def name(self) -> str:
@@ -98,8 +97,7 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
         except UsageError as reason:
             return self._refused(reason)
         limits = self._limits(timeout)
-        search = Search(task.domain, task.problem, self._settings_of(task))
-        result = search.advance(limits) or Result("limit", None, limits.reason, *search.counts)
+        result = built_in(task.domain, task.problem, self._settings_of(task), limits)
         return self._result(task, result, _status(result, task, limits))
 
     def _get_solutions(

@@ -24,11 +24,11 @@ from tailor.executive.planning import (
 )
 from tailor.runtime.planners.named import check_engine, kairos_command
 from tailor.schemas.errors import UsageError
-from tailor.tools.plan_search.limits import Limits
+from tailor.tools.plan_search.limits import MAX_PLANS, Limits
 from tailor.tools.plan_search.sources import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
 from tailor.tools.planning import options
 from tailor.tools.planning.ignored_options import refuse_ignored
-from tailor.tools.planning.options import MAX_PLANS, settings_of
+from tailor.tools.planning.options import settings_of
 from tailor.tools.planning.output import as_json, print_result
 from tailor.tools.planning.pddl_files import read_texts
 

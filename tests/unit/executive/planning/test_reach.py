@@ -10,7 +10,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import DEFAULT, MATCHING, GroundCache, Search, Settings, validate
 from tailor.executive.planning.ground import grounding
 from tailor.executive.planning.ground.bindings import least_bindings, schema_bindings
-from tailor.tools.planning.options import GROUND_LIMIT
+from tailor.tools.plan_search.limits import GROUND_LIMIT
 from tests.support.planning.planning_problems import OWN, own, read, solve
 
 LOGISTICS = """(define (domain logistics) (:requirements :strips)
