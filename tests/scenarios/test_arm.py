@@ -24,7 +24,7 @@ STOPPING = WritingMode("stopping", RefinementSettings(), stops=True)
 
 
 def written(text, hand, seed=3):
-    return write(text, hand, MODELS, seed, BODY)
+    return write(text, hand, MODELS, seed, BODY)[0]
 
 
 @pytest.mark.parametrize("hand", [STOPPING, GREEDY, REFINED], ids=lambda hand: hand.name)

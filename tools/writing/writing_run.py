@@ -41,13 +41,6 @@ class RecordedBody(PowerCubeBody):
 
 def write(
     text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody, velocities: Sequence[Point] = ()
-) -> WritingTrack:
-    """Write capitals; see `run_writing`."""
-    return run_writing(text, mode, models, seed, body, velocities)[0]
-
-
-def run_writing(
-    text: str, mode: WritingMode, models: Models, seed: int, body: RecordedBody, velocities: Sequence[Point] = ()
 ) -> tuple[WritingTrack, Run]:
     """Write capitals; the same seed gives the same letters, start and noise in every mode.
 

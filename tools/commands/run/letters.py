@@ -118,7 +118,7 @@ def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[Wri
     from tailor.tools.writing.writing_run import RecordedBody, write  # here: they load the simulator
 
     models, body = Models(*load_robot(RecordedBody.robot)), RecordedBody()
-    return [write(text, mode, models, seed, body) for mode in modes]
+    return [write(text, mode, models, seed, body)[0] for mode in modes]
 
 
 def _live(text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace) -> list[WritingTrack]:

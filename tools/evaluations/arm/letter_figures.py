@@ -22,7 +22,7 @@ from tailor.tools.lockstep.run import Run
 from tailor.tools.parallel.pool import completed, in_order
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
 from tailor.tools.writing.writing_mode import WritingMode
-from tailor.tools.writing.writing_run import RecordedBody, run_writing
+from tailor.tools.writing.writing_run import RecordedBody, write
 from tailor.tools.writing.writing_track import WritingTrack
 
 ALL_AHEAD = 9  # more actions than a letter has
@@ -94,7 +94,7 @@ def write_letter(mode: WritingMode, letter: str, seed: int, zoo: str) -> Writing
 def _written(mode: WritingMode, letter: str, seed: int, zoo: str) -> tuple[WritingTrack, Run]:
     models = Models({"reach/duration": PerfectReach()}, {}) if mode in ORACLES else _models(zoo)
     velocities = greedy_velocities(letter, seed) if mode == PERFECT_GREEDY else ()
-    return run_writing(letter, mode, models, seed, RecordedBody(), velocities)
+    return write(letter, mode, models, seed, RecordedBody(), velocities)
 
 
 @lru_cache(maxsize=2)
