@@ -26,7 +26,6 @@ class Usage:
 
     resident_mb: float
     peak_mb: float
-    locked_mb: float  # address space, resident or not
     minor_faults: int  # of its main thread so far: pages found in memory
     major_faults: int  # pages read from the disk
 
@@ -36,7 +35,7 @@ class Usage:
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()
         kb = {line.split(":")[0]: int(line.split()[1]) for line in lines if line.startswith("Vm")}
         stat = Path(f"/proc/{pid}/task/{pid}/stat").read_text().rpartition(")")[2].split()
-        return cls(kb["VmRSS"] / 1000, kb["VmHWM"] / 1000, kb["VmLck"] / 1000, int(stat[7]), int(stat[9]))
+        return cls(kb["VmRSS"] / 1000, kb["VmHWM"] / 1000, int(stat[7]), int(stat[9]))
 
 
 def run(console: Console, quick: bool) -> None:
