@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 
-Array = NDArray[np.float64]
 Units = Sequence[str | int]
 P_THRESHOLD = 0.001  # smaller ones are no further evidence
 RESAMPLES = 2000

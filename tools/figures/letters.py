@@ -13,13 +13,11 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
-from numpy.typing import NDArray
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.cli.output_files import whole_output
 from tailor.tools.writing.measures import pen_m
 from tailor.tools.writing.writing_track import WritingTrack
-
-Array = NDArray[np.float64]
 
 MAX_RADPS = 1.0  # brightest colour
 COLOURS = "viridis"

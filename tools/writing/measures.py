@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tailor.executive.domains.arm.robot import PEN_M
+from tailor.executive.interfaces.values import Array
 from tailor.tools.writing.writing_track import WritingTrack
 
-Array = NDArray[np.float64]
 GRID_S = 0.02  # of the joint states
 SMOOTHING = 5  # of them: set-points come every 0.1 s, and their corners are not the arm's
 

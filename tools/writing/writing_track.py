@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from tailor.executive.domains.arm.letters import font
 from tailor.executive.domains.arm.robot import JOINTS
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, MotorCurrents, Subgoals
 from tailor.schemas.reason_text import result_text
 
-Array = NDArray[np.float64]
 PERIOD_S = 0.1  # an action is done one period before its waypoint
 
 

@@ -11,8 +11,8 @@ from tailor.executive.actions.cubic import MAX_S, MIN_S
 from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.action_library import REACH
 from tailor.executive.domains.arm.load import accelerations
+from tailor.executive.interfaces.values import Array
 
-Array = NDArray[np.float64]
 STEPS = 160  # of the search, evenly spaced in the logarithm of the duration
 HALVINGS = 22
 

@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tailor.executive.deliberation.context import Context
+from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.schemas.messages import Contexts, Subgoals
 from tailor.tools.viewer.explanations.decided_sequence import chosen_values, sequence_of
-
-Array = NDArray[np.float64]
 
 STEP_M = 0.1
 MARGIN_M = 1.2  # around start, goal and subgoal

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.cli.output_files import whole_output
-from tailor.tools.evaluations.assertion.subgoal_map import Array, SubgoalMap
+from tailor.tools.evaluations.assertion.subgoal_map import SubgoalMap
 from tailor.tools.figures.paths import corners, draw_side_by_side
 from tailor.tools.figures.track import Track
 

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.evaluations.live.equivalence import equivalence
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import p_shown
 
-Array = NDArray[np.float64]
 NO_INTERVAL = {"ci95_pct": (math.nan, math.nan)}
 UNKNOWN = (  # of fewer than two runs that achieved their goals
     "mean_lockstep_s", "mean_s", "difference_pct", "p_value", "p_rank", "p_equivalent", "within_range_pct",

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.evaluations.outcome import Outcome
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.cli.output_files import whole_output
-from tailor.tools.evaluations.refinement.sweep import Array, Sweep
+from tailor.tools.evaluations.refinement.sweep import Sweep
 from tailor.tools.figures.paths import draw_side_by_side, size_in
 from tailor.tools.figures.signed_degrees import count_both_ways
 from tailor.tools.figures.track import Track

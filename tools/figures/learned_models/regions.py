@@ -6,16 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tailor.executive.interfaces.values import Array
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.examples import Examples
 from tailor.models.features.features import FeatureSpace
 from tailor.models.features.joints import joints, joints_friction
 from tailor.models.features.planar import projective
 from tailor.models.inference import OnnxDuration
-
-Array = NDArray[np.float64]
 
 DIST_M = 1.5  # Figure 7: straight ahead, standing still
 STEP_RAD, ARRIVING_RAD_S = 0.7, 0.4  # its like for two joints: along the first, from rest

@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from tailor.executive.interfaces.values import Array
 from tailor.models.cards.card import UNITS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.rules.model_queries import distilled_duration, space_of
 from tailor.models.rules.rule_text import QUANTITY_NAMES, conditions, formula, leaf_boxes
 from tailor.tools.figures.learned_models.regions import Region, swept
 from tailor.tools.figures.signed_degrees import count_both_ways
-
-Array = NDArray[np.float64]
 
 WIDEST = 150  # characters of a rule on one line
 AREA_M = 2.0  # Figure 8: half the side of the square around the goal
