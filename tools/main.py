@@ -47,10 +47,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "cut": ("tailor.tools.commands.look.cut", "cut a time span or some topics out of a recording"),
     "compare": ("tailor.tools.commands.look.compare", "compare two recorded runs"),
     "verify": ("tailor.tools.commands.look.verify", "replay a recording through today's core and compare bit for bit"),
-    "picture": (
-        "tailor.tools.commands.look.picture",
-        "draw the paths of recordings as in the paper's Figure 1",
-    ),
+    "picture": ("tailor.tools.commands.look.picture", "draw the paths of recordings as in the paper's Figure 1"),
     "view": ("tailor.tools.commands.look.view", "show a run in the browser, recorded or live"),
     "scene": ("tailor.tools.commands.look.scene", "give 3D viewers markers and transforms of a run, recorded or live"),
     "why": ("tailor.tools.commands.look.why", "explain the choice of subgoals, compared with greedy"),

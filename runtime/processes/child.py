@@ -32,11 +32,7 @@ class Child:
     """One running child process."""
 
     def __init__(
-        self,
-        name: str,
-        argv: Sequence[str],
-        output: IO[str] | int | None = None,
-        notify_folder: Path | None = None,
+        self, name: str, argv: Sequence[str], output: IO[str] | int | None = None, notify_folder: Path | None = None
     ) -> None:
         """Start `argv`; when this process dies, the child receives SIGTERM, and SIGKILL 3 s later.
 

@@ -52,12 +52,7 @@ class Recorder:
     """Records the bus; call `step` about ten times a second from one thread, and `close` at the end."""
 
     def __init__(
-        self,
-        path: Path,
-        queue: IngestQueue,
-        selection: Selection,
-        limits: Limits,
-        metadata: RecordingMetadata,
+        self, path: Path, queue: IngestQueue, selection: Selection, limits: Limits, metadata: RecordingMetadata
     ) -> None:
         """Create the (first) file.
 

@@ -46,8 +46,7 @@ def spec_of_robot(robot: str) -> DomainSpec:
     unread = [package for package in packages() if package.spec is None]  # the robot's package may be one of them
     none = f"no robot {robot!r}, expected one of: {', '.join(robot_names())}{_meant(robot)}"
     return _usable(
-        owners or [package for package in unread if package.name == robot],
-        "; ".join([none, *map(_refusal, unread)]),
+        owners or [package for package in unread if package.name == robot], "; ".join([none, *map(_refusal, unread)])
     )
 
 

@@ -90,9 +90,4 @@ def _usage(name: str, pid: int) -> Usage:
 def _row(before: Usage, after: Usage) -> list[str]:
     minor, major = after.minor_faults - before.minor_faults, after.major_faults - before.major_faults
     grown = after.resident_mb - before.resident_mb
-    return [
-        f"{after.resident_mb:.0f}",
-        f"{after.peak_mb:.0f}",
-        f"{grown:+.1f}",
-        f"{minor} minor, {major} major",
-    ]
+    return [f"{after.resident_mb:.0f}", f"{after.peak_mb:.0f}", f"{grown:+.1f}", f"{minor} minor, {major} major"]

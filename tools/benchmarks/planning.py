@@ -20,14 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.planning import (
-    MATCHING,
-    Problem,
-    Result,
-    Search,
-    parse_domain,
-    parse_problem,
-)
+from tailor.executive.planning import MATCHING, Problem, Result, Search, parse_domain, parse_problem
 from tailor.tools.benchmarks.no_measurement import NoMeasurement
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "pddl"

@@ -132,10 +132,7 @@ def _configure_output(group: argparse._ArgumentGroup) -> None:
     forms.add_argument("--dot", action="store_true", help="print the partial order as a Graphviz graph")
     forms.add_argument("--svg", action="store_true", help="print the partial order as an SVG image")
     group.add_argument(
-        "-v",
-        "--verbose",
-        action="store_true",
-        help="print the cost of the search on standard error (also -v1 ...)",
+        "-v", "--verbose", action="store_true", help="print the cost of the search on standard error (also -v1 ...)"
     )
     levels = [f"{option}{level}" for option in ("-v", "--verbose=") for level in range(100)]
     group.add_argument(*levels, dest="verbose", action="store_true", help=argparse.SUPPRESS)

@@ -12,19 +12,7 @@ from dataclasses import replace
 from tailor.schemas import messages as m
 from tailor.schemas.errors import Rejected
 from tailor.schemas.packages.pose3 import Pose3, on_plane
-from tailor.schemas.packages.scene import (
-    BASE,
-    MAP,
-    ODOM,
-    Scene,
-    arrow,
-    frame,
-    line,
-    on_map,
-    pose_of,
-    sphere,
-    text,
-)
+from tailor.schemas.packages.scene import BASE, MAP, ODOM, Scene, arrow, frame, line, on_map, pose_of, sphere, text
 from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, Subgoal

@@ -63,10 +63,7 @@ def decisions_of(messages: Iterable[Timed]) -> DecisionLog:
         if isinstance(message, Provenance):
             log.provenance = log.provenance or message.json
         elif isinstance(message, RefinementReport) and search and _certifies(message, search[-1]):
-            certified = [
-                *search[:-1],
-                replace(message, tick=search[-1].tick),
-            ]  # the search's last tick
+            certified = [*search[:-1], replace(message, tick=search[-1].tick)]  # the search's last tick
             if log.decisions and log.decisions[-1].report is search[-1]:
                 log.decisions[-1] = replace(log.decisions[-1], report=certified[-1])
             search = certified

@@ -117,11 +117,7 @@ def fields_of(explanation: Explanation) -> Fields:
 
 
 def _avoided(failure: AvoidedFailure) -> Fields:
-    return {
-        "action": failure.action,
-        "straight": number(failure.straight),
-        "by_subgoal": number(failure.by_subgoal),
-    }
+    return {"action": failure.action, "straight": number(failure.straight), "by_subgoal": number(failure.by_subgoal)}
 
 
 def _numbers(values: Sequence[float]) -> list[float | None]:

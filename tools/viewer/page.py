@@ -50,14 +50,7 @@ def page(title: str, events: Iterable[Event], live: bool = False, stop_token: st
       framed: Whether the page is a frame of another one, which has the player.
     """
     rows, samples = packed(events)
-    data = {
-        "title": title,
-        "live": live,
-        "stop": stop_token,
-        "framed": framed,
-        "rows": rows,
-        "samples": samples,
-    }
+    data = {"title": title, "live": live, "stop": stop_token, "framed": framed, "rows": rows, "samples": samples}
     return assembled("page.html", SCRIPTS, {"TITLE": html.escape(title)}, data)
 
 

@@ -32,11 +32,7 @@ class McapWriter:
     """Writes messages in the order of their reception."""
 
     def __init__(
-        self,
-        path: Path,
-        metadata: Mapping[str, Mapping[str, str]],
-        compact: bool = False,
-        background: bool = False,
+        self, path: Path, metadata: Mapping[str, Mapping[str, str]], compact: bool = False, background: bool = False
     ) -> None:
         """Create the file.
 

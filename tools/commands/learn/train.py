@@ -52,12 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("robot", help="name of the robot, as in the manifests of the data sets")
     add("actions", nargs="*", default=[], metavar="ACTION", help="actions to train (default: all data sets)")
     add("--data", type=Path, nargs="+", default=[], help="folders with a data set per action (default: data/ROBOT)")
-    add(
-        "--zoo",
-        type=Path,
-        metavar="DIR",
-        help="folder to write models to (default: that of the robot)",
-    )
+    add("--zoo", type=Path, metavar="DIR", help="folder to write models to (default: that of the robot)")
     add("--features", help="feature space (default: projective, or the one that fits the data's arguments)")
     add("--energy-features", help="feature space of energies (default: as --features; joints-relative for joints)")
     add("--learner", default=DEFAULT_LEARNER,

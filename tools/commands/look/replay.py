@@ -46,24 +46,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor replay`."""
     add = parser.add_argument
     add("file", help="recording (MCAP)")
-    add(
-        "--rate",
-        type=float,
-        default=1.0,
-        metavar="X",
-        help=f"recorded s per s, {MIN_RATE:g} to {MAX_RATE:g}",
-    )
+    add("--rate", type=float, default=1.0, metavar="X", help=f"recorded s per s, {MIN_RATE:g} to {MAX_RATE:g}")
     add("--start", type=float, default=0.0, metavar="S", help="begin this long after the first message")
     add("--duration", type=float, default=0.0, metavar="S", help="end after this much recorded time")
     add("--loop", action="store_true", help="repeat until stopped")
     configure_selection(parser)
-    add(
-        "--remap",
-        action="append",
-        default=[],
-        metavar="OLD=NEW",
-        help="replace a key, e.g. agilo/odom=ghost/odom",
-    )
+    add("--remap", action="append", default=[], metavar="OLD=NEW", help="replace a key, e.g. agilo/odom=ghost/odom")
     add("--clock", type=float, default=0.0, metavar="HZ", help="publish the recorded time on /clock")
     add("--paused", action="store_true", help="begin paused")
     add("--wait", type=float, default=2.0, metavar="S", help="wait this long for subscribers (default 2)")

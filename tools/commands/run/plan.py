@@ -13,15 +13,7 @@ import math
 import sys
 import time
 
-from tailor.executive.planning import (
-    Domain,
-    Problem,
-    Result,
-    Unsupported,
-    parse_domain,
-    parse_problem,
-    validate,
-)
+from tailor.executive.planning import Domain, Problem, Result, Unsupported, parse_domain, parse_problem, validate
 from tailor.runtime.planners.named import check_engine, kairos_command
 from tailor.schemas.errors import UsageError
 from tailor.tools.plan_search.limits import MAX_PLANS, Limits

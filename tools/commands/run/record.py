@@ -52,13 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     configure_selection(parser)
     add("--max-size", type=float, metavar="MB", default=0.0, help="begin a new file at this size")
     add("--max-duration", type=float, metavar="S", default=0.0, help="begin a new file after this time")
-    add(
-        "--snapshot",
-        type=float,
-        metavar="S",
-        default=0.0,
-        help="keep the last S seconds in memory, write on request",
-    )
+    add("--snapshot", type=float, metavar="S", default=0.0, help="keep the last S seconds in memory, write on request")
     add("--write", action="store_true", help="request that a running `tailor record --snapshot` writes its file now")
     add("--quiet", action="store_true", help="print nothing unless something is lost")
     add("--json", action="store_true", help="print the files and numbers of messages as JSON at the end")
@@ -139,11 +133,7 @@ def _recorder(
 
 
 def _record(
-    recorder: Recorder | SnapshotRecorder,
-    bus: RecorderBus,
-    stop: Stop,
-    notifier: Notifier,
-    quiet: bool,
+    recorder: Recorder | SnapshotRecorder, bus: RecorderBus, stop: Stop, notifier: Notifier, quiet: bool
 ) -> None:
     shown = Live(console=Console(stderr=True), refresh_per_second=4, transient=True)
     with shown if sys.stderr.isatty() and not quiet else nullcontext() as live:

@@ -58,13 +58,7 @@ def _mark_least(axis: Any, ground: SubgoalMap) -> None:
 
 
 def _map(
-    figure: Figure,
-    axis: Any,
-    ground: SubgoalMap,
-    track: Track,
-    table: Array,
-    name: str,
-    cmap: str = "viridis",
+    figure: Figure, axis: Any, ground: SubgoalMap, track: Track, table: Array, name: str, cmap: str = "viridis"
 ) -> None:
     """One table over the ground, with objects, start, goal and the subgoal as chosen."""
     limits = (0.0, 1.0) if cmap != "viridis" else (None, None)

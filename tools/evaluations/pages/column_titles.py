@@ -2,17 +2,7 @@
 
 from __future__ import annotations
 
-UNITS = {
-    "pct": "%",
-    "s": "s",
-    "ms": "ms",
-    "m": "m",
-    "mps": "m/s",
-    "rad": "rad",
-    "mrad": "mrad",
-    "deg": "°",
-    "j": "J",
-}
+UNITS = {"pct": "%", "s": "s", "ms": "ms", "m": "m", "mps": "m/s", "rad": "rad", "mrad": "mrad", "deg": "°", "j": "J"}
 WORDS = {"ci95": "95 % interval", "more": "difference", "mae": "MAE", "rms": "RMS", "wilcoxon": "Wilcoxon"}
 
 

@@ -45,11 +45,7 @@ def sequence_of(
     contexts = _rows_by_action(objects) if objects is not None and objects.tick == message.tick else {}
     actions = tuple(
         InstantiatedAction(
-            library[a.action],
-            a.step,
-            tuple(p.id for p in a.parameters),
-            a.asserted,
-            context=contexts.get(a.action, ()),
+            library[a.action], a.step, tuple(p.id for p in a.parameters), a.asserted, context=contexts.get(a.action, ())
         )
         for a in message.actions
     )
