@@ -29,9 +29,8 @@ MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth o
 MAX_MEMORY_BYTES = 2 << 30  # address space; the robot's own processes run on the same machine
 _CHUNK = 65536
 _REAP_S = 0.005  # a killed process has ended by then, except a huge one; upper bound of the wait
-vars(subprocess)["_USE_VFORK"] = (
-    False  # vfork blocks all threads until the child has started (see the notes of subprocess)
-)
+# vfork blocks all threads until the child has started (see the notes of subprocess)
+vars(subprocess)["_USE_VFORK"] = False
 
 
 Outcome = Literal["answered", "crashed", "timeout", "flood"]

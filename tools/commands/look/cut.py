@@ -45,9 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
     wanted = selection(arguments.topics, arguments.exclude)
     first = next(recording.messages(), None)
     zero_ns = 0 if first is None else first.log_ns
-    start_ns = (
-        zero_ns + round(arguments.start * 1e9) if arguments.start else 0
-    )  # the first message need not be the earliest
+    # the first message need not be the earliest
+    start_ns = zero_ns + round(arguments.start * 1e9) if arguments.start else 0
     end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
     target: Path = arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap")
 

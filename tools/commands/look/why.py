@@ -129,18 +129,14 @@ def _show(decisions: Sequence[ExplainedDecision]) -> None:
 
 
 def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
-    decision, report = explained.decision, explained.decision.report
+    decision, explanation, report = explained.decision, explained.explanation, explained.decision.report
     return {
         "at_s": decision.at_s,
         "actions": [action.action for action in decision.subgoals.actions],
-        "explanation": None if explained.explanation is None else fields_of(explained.explanation),
-        "rules": []
-        if explained.explanation is None
-        else [situation.rule for situation in explained.explanation.situations],
+        "explanation": None if explanation is None else fields_of(explanation),
+        "rules": [] if explanation is None else [situation.rule for situation in explanation.situations],
         "best_cost": number(explained.best_cost),
-        "certified_gap_pct": None
-        if explained.explanation is None
-        else certified_gap_pct(report, explained.explanation.chosen_cost),
+        "certified_gap_pct": None if explanation is None else certified_gap_pct(report, explanation.chosen_cost),
         "not_certified": explained.not_certified,
         "search": None
         if report is None

@@ -58,9 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
     if everything and {"-h", "--help"} & set(flags):
         print(HELP_OF_ALL.format(names=", ".join(names)))
         return 0
-    chosen = chosen_of(
-        names, [flag for flag in flags if flag != RESUME], everything
-    )  # raises on a wrong flag before anything runs
+    # raises on a wrong flag before anything runs
+    chosen = chosen_of(names, [flag for flag in flags if flag != RESUME], everything)
     if RESUME in flags and chosen and chosen[0][2].report is None:
         raise UsageError(
             "--resume skips evaluations whose page is in the report's folder, expected --report DIR with it"

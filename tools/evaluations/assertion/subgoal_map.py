@@ -31,9 +31,7 @@ class SubgoalMap:
     y: Array
     first_s: Array  # to the subgoal
     second_s: Array  # from there to the goal
-    success: (
-        Array  # of the less sure one of both actions, wherever they may arrive, by the best heading and speed there
-    )
+    success: Array  # of the less sure of both actions, wherever they may arrive, by the best heading and speed there
     limit: float  # of failure, that the executive kept
     subgoal: tuple[float, float, float]  # as chosen: x, y, heading
     start: tuple[float, float]

@@ -38,9 +38,8 @@ def sequence_of(
                 declared.periodic and wide,
                 parameter.value if parameter.bound else None,
             )
-    unused = Variable(
-        0, "", "", "", 0.0, 0.0, False, 0.0
-    )  # ids have gaps where an asserted subgoal replaced a variable
+    # ids have gaps where an asserted subgoal replaced a variable
+    unused = Variable(0, "", "", "", 0.0, 0.0, False, 0.0)
     variables = tuple(table.get(i, replace(unused, id=i)) for i in range(max(table) + 1))
     contexts = _rows_by_action(objects) if objects is not None and objects.tick == message.tick else {}
     actions = tuple(

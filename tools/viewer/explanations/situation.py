@@ -40,16 +40,12 @@ def situations_of(
     found = []
     for action in actions:
         model = models.durations[models.duration_path(action.action.duration_model, bool(action.context))]
-        card, bounds = getattr(model, "card", {}), getattr(model, "bounds", None)
+        card, trees = getattr(model, "card", {}), getattr(getattr(model, "bounds", None), "trees", None)
         space = feature_spaces().get(card.get("features", ""))
         if space is not None:
             both = np.array([_parameters(action, sequence) for sequence in (chosen, greedy)])
             seen = space(action.action.arguments(both))
-            rule = (
-                ""
-                if bounds is None or bounds.trees is None
-                else applied_rule(bounds.trees.boxes, seen[0], space.features, UNITS[card["kind"]])
-            )
+            rule = "" if trees is None else applied_rule(trees.boxes, seen[0], space.features, UNITS[card["kind"]])
             chose, alone = (tuple(row.astype(float)) for row in seen)
             found.append(Situation(action.action.name, space.features, chose, alone, rule))
     return tuple(found)
