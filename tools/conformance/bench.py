@@ -7,17 +7,16 @@ import re
 import secrets
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Protocol
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import at_rest, messages_of
 from tailor.runtime.bus.attachment import Origin
-from tailor.schemas.messages import ArmRequest, DriverState, EStop, Message
+from tailor.schemas.messages import ArmRequest, DriverState, EStop
 from tailor.simnodes.driver import SHOWN_DIGITS, shown
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.reasons import Reason
+from tailor.tools.conformance.link import Heard, Link, speed_in
 
 PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors
@@ -32,44 +31,6 @@ class NotPossible(Exception):
 
 class EStopPressed(Exception):
     """Somebody else stopped all drivers: the bench, which resets the e-stops that it sends, must not reset this one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Heard:
-    """A message of the driver.
-
-    Attributes:
-      at_s: When it was received.
-      stamp_s: When it was measured, by the driver's clock; `at_s` for a message without a stamp.
-    """
-
-    at_s: float
-    stamp_s: float
-    topic: str
-    message: Message
-    frame: str
-    sender: str
-    sequence: int
-
-
-class Link(Protocol):
-    """The way to a driver."""
-
-    def now_s(self) -> float:
-        """Time of this link, seconds."""
-        ...
-
-    def wait(self, seconds: float) -> list[Heard]:
-        """Let time pass; what was heard meanwhile."""
-        ...
-
-    def publish(self, topic: str, message: Message, origin: Origin) -> None:
-        """Publish to the driver, with any origin."""
-        ...
-
-    def stalled_s(self) -> float:
-        """Longest time, since the last call, for which this process could not run when it had to."""
-        ...
 
 
 class Bench:
@@ -269,14 +230,3 @@ class Bench:
 def farther(limit: Limit) -> float:
     """The limit of an axis in the direction in which it goes faster: a vehicle may hardly go back, or not at all."""
     return limit.upper if limit.upper >= -limit.lower else limit.lower
-
-
-def speed_in(heard: Heard, axis: str) -> float | None:
-    """Speed of an axis in a message: of a joint by its name, or the field of the axis's name beside a position."""
-    message = heard.message
-    names = getattr(message, "names", None)
-    velocities = getattr(message, "velocities", ())
-    if names is not None:
-        return dict(zip(names, velocities, strict=False)).get(axis)
-    value = getattr(message, axis, None)
-    return value if isinstance(value, float) else None

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from statistics import fmean, median, pstdev
 
-from tailor.tools.conformance.bench import Bench, NotPossible, farther, speed_in
+from tailor.tools.conformance.bench import Bench, NotPossible, farther
+from tailor.tools.conformance.link import speed_in
 
 STEP_S = 3.0  # longest step; a step ends as soon as the axis has settled, since an arm has no room to run
 WINDOW_S, SETTLED = 0.3, 0.03  # change of the mean speed from window to window, as a fraction of the step

@@ -16,7 +16,7 @@ from tailor.schemas.ros2.plain import frame_in
 from tailor.schemas.ros2.profiles import ros_topic
 from tailor.schemas.ros2.type_mismatches import mismatches
 from tailor.schemas.topics import TOPICS
-from tailor.tools.conformance.bench import Heard
+from tailor.tools.conformance.link import Heard
 
 POLL_S = 0.002
 MATCH_S = 5.0  # for the driver to appear

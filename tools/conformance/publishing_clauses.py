@@ -7,8 +7,9 @@ from itertools import pairwise
 
 from tailor.schemas.messages import DriverState
 from tailor.schemas.topics import TOPICS
-from tailor.tools.conformance.bench import Bench, Heard
+from tailor.tools.conformance.bench import Bench
 from tailor.tools.conformance.clause import clause
+from tailor.tools.conformance.link import Heard
 
 LISTEN_S = 3.0
 MIN_STATE_HZ = 7.0  # of 10 Hz

@@ -16,7 +16,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
-from tailor.tools.conformance.bench import Heard
+from tailor.tools.conformance.link import Heard
 
 DRIVER = "d" * 32  # its sender id
 EPOCH = 7

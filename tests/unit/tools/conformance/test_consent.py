@@ -12,7 +12,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState
 from tailor.schemas.own import example
 from tailor.tools.commands.drivers import check_driver
-from tailor.tools.conformance.bench import Bench, Heard
+from tailor.tools.conformance.bench import Bench
+from tailor.tools.conformance.link import Heard
 
 STEP = "agilo/sim/step"
 
