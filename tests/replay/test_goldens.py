@@ -26,7 +26,8 @@ from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.messages import Provenance, RefinementReport, VelocityCommand
 from tailor.tools.goldens import renew
 from tailor.tools.main import main
-from tailor.tools.recordings.recorded_run import RecordedRuns, decoded
+from tailor.tools.recordings.executive_run import decoded
+from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.recorded_source import UNSTATED
 from tailor.tools.recordings.verification import verdict_text, verify
 from tests.support.bus_system import ROOT

@@ -11,7 +11,8 @@ from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.topics import TOPICS
 from tailor.tools.recordings.comparison import ComparedRun, compared_run
 from tailor.tools.recordings.differences import first_field
-from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, RecordedRuns, decoded
+from tailor.tools.recordings.executive_run import PROVENANCE_KEY, decoded
+from tailor.tools.recordings.recorded_run import RecordedRuns
 
 
 def changes(old: Path, new: Path) -> list[str]:

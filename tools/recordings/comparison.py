@@ -20,7 +20,8 @@ from tailor.schemas.reason_text import result_text
 from tailor.schemas.topics import TOPICS
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.damage_notice import warn
-from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns, decoded
+from tailor.tools.recordings.executive_run import RecordedRun, decoded
+from tailor.tools.recordings.recorded_run import RecordedRuns
 
 COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
 PERIOD_S = 0.1  # of the executive

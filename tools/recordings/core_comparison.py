@@ -14,7 +14,7 @@ from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, RefinementReport
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.recordings.differences import Difference, first_field, rounding_apart, with_proof_of
-from tailor.tools.recordings.recorded_run import RecordedRun, decoded
+from tailor.tools.recordings.executive_run import RecordedRun, decoded
 
 REFINEMENT = TOPICS["refinement"].key
 

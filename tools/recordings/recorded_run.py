@@ -14,17 +14,7 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Sample
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
-from tailor.tools.recordings.executive_run import (
-    PROVENANCE_KEY,
-    TICK_KEY,
-    RecordedRun,
-    add,
-    decoded,
-    executives,
-    sort_by_number,
-)
-
-__all__ = ["PROVENANCE_KEY", "TICK_KEY", "RecordedRun", "RecordedRuns", "decoded"]
+from tailor.tools.recordings.executive_run import TICK_KEY, RecordedRun, add, decoded, executives, sort_by_number
 
 MAX_BYTES = 1_000_000_000  # a run has about 10 MB a minute
 HEAD_BYTES = 200  # of memory for each message beside its data, which may be empty

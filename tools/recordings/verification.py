@@ -18,7 +18,8 @@ from tailor.schemas.installed.core_source import core_source
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.recordings.core_comparison import RunComparison, without_proofs
 from tailor.tools.recordings.differences import PROOF_ROUNDING_PCT, ROUNDING, Difference
-from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
+from tailor.tools.recordings.executive_run import RecordedRun
+from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.recorded_source import source_contrast
 
 END_NS = 2**31 * 10**9  # of the seconds in a ROS message

@@ -18,7 +18,8 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop, Provenance, TickReport, VelocityCommand
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.main import main
-from tailor.tools.recordings.recorded_run import PROVENANCE_KEY, TICK_KEY, RecordedRuns
+from tailor.tools.recordings.executive_run import PROVENANCE_KEY, TICK_KEY
+from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.verification import verify
 
 GOLDEN = Path(__file__).parents[2] / "data" / "golden" / "soccer-approach.mcap"

@@ -21,7 +21,8 @@ from tailor.schemas.installed.core_source import core_source
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.recordings.damage_notice import warn
-from tailor.tools.recordings.recorded_run import RecordedRun, RecordedRuns
+from tailor.tools.recordings.executive_run import RecordedRun
+from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.recorded_source import source_entry
 from tailor.tools.recordings.verification import Verdict, verdict_text, verify
 
