@@ -8,7 +8,6 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-import numpy.typing as npt
 
 from tailor.models.cards.card import UNITS, Card
 from tailor.models.episodes.episodes import UNOBSERVED, Episode
@@ -16,8 +15,8 @@ from tailor.models.episodes.examples import Examples, success_examples
 from tailor.models.episodes.regression_targets import REGRESSION_TARGETS
 from tailor.models.inference import OnnxDuration, OnnxSuccess
 from tailor.models.training import scores
-from tailor.tools.cli.output_files import whole_output
 from tailor.tools.figures.learned_models import regions, shapes
+from tailor.tools.figures.learned_models.reports import axis_end, saved
 from tailor.tools.learning.known_episodes import known_episodes
 
 mpl.use("Agg")
@@ -25,7 +24,6 @@ from matplotlib import pyplot as plt
 from matplotlib.ticker import MaxNLocator
 
 Model = OnnxDuration | OnnxSuccess
-Array = npt.NDArray[np.float64]
 AREA = 300.0  # of the largest marker, in square points
 
 
@@ -68,10 +66,7 @@ def _save(path: Path, title: str, fill: Callable[[Any], None]) -> Path:
     figure = plt.figure(figsize=(9, 4.5), layout="constrained")
     figure.suptitle(title, fontsize="medium", fontweight="bold")
     fill(figure)
-    with whole_output(path) as whole:
-        figure.savefig(whole, dpi=110)
-    plt.close(figure)
-    return path
+    return saved(figure, path)
 
 
 def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> None:
@@ -91,11 +86,6 @@ def _predicted_observed(figure: Any, model: OnnxDuration, rows: Examples) -> Non
     right.set_title("is it sure when right?", fontsize="medium")
     right.xaxis.set_major_locator(MaxNLocator(5))
     right.legend(loc="upper right", fontsize="small")
-
-
-def axis_end(values: Array) -> float:
-    """End of an axis from 0 that shows all these values, shape (n,), but the largest of two hundred."""
-    return 1.05 * float(np.quantile(values, 0.995))
 
 
 def _learning_curve(figure: Any, card: Card) -> None:

@@ -8,14 +8,12 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from numpy.typing import NDArray
 
+from tailor.executive.interfaces.values import Array
 from tailor.tools.cli.output_files import whole_output
 
 mpl.use("Agg")
 from matplotlib import pyplot as plt
-
-Array = NDArray[Any]
 
 
 def bars(path: Path, names: Sequence[str], errors: Sequence[float], intervals: Sequence[Sequence[float]]) -> Path:
@@ -24,18 +22,18 @@ def bars(path: Path, names: Sequence[str], errors: Sequence[float], intervals: S
     low, high = np.array(intervals).T
     axes.bar(names, errors, yerr=[errors - low, high - errors], capsize=4)
     axes.set_ylabel("MAE [s]")
-    return _saved(figure, path)
+    return saved(figure, path)
 
 
 def scatter(path: Path, predicted: Mapping[str, Array], observed: Mapping[str, Array]) -> Path:
     """Predicted against observed seconds, one panel a name."""
     figure, panels = _panels(len(predicted))
     for axes, name in zip(panels, predicted, strict=True):
-        limit = 1.05 * float(np.quantile(observed[name], 0.995))
+        limit = axis_end(observed[name])
         axes.scatter(predicted[name], observed[name], s=4, alpha=0.4)
         axes.plot([0, limit], [0, limit], color="black", lw=1)
         axes.set(title=name, xlabel="predicted [s]", ylabel="observed [s]", xlim=(0, limit), ylim=(0, limit))
-    return _saved(figure, path)
+    return saved(figure, path)
 
 
 def against_features(path: Path, columns: Mapping[str, Array], seconds: Array) -> Path:
@@ -44,7 +42,7 @@ def against_features(path: Path, columns: Mapping[str, Array], seconds: Array) -
     for axes, (name, values) in zip(panels, columns.items(), strict=True):
         axes.scatter(values, seconds, s=3, alpha=0.3)
         axes.set(xlabel=name, ylabel="time [s]")
-    return _saved(figure, path)
+    return saved(figure, path)
 
 
 def _panels(count: int) -> tuple[Any, Any]:
@@ -52,7 +50,13 @@ def _panels(count: int) -> tuple[Any, Any]:
     return figure, panels[0]
 
 
-def _saved(figure: Any, path: Path) -> Path:
+def axis_end(values: Array) -> float:
+    """End of an axis from 0 that shows all these values, shape (n,), but the largest of two hundred."""
+    return 1.05 * float(np.quantile(values, 0.995))
+
+
+def saved(figure: Any, path: Path) -> Path:
+    """Write a figure and close it; returns the path."""
     with whole_output(path) as whole:
         figure.savefig(whole, dpi=110)
     plt.close(figure)
