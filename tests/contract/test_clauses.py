@@ -17,7 +17,7 @@ from tailor.models.features.features import FeatureSpace, quantities
 from tailor.schemas.installed import models_folder
 from tailor.schemas.packages.scene import sphere
 from tailor.tools.contract.subject import Subject
-from tailor.tools.contract.suite import CLAUSES, cases, faults
+from tailor.tools.contract.suite import CLAUSES, cases
 from tailor.tools.contract.units import is_unit
 from tailor.tools.new_robot.templates import kinds
 from tests.support.robots.known_robot import known_robot
@@ -39,7 +39,7 @@ def subject(cart):
 
 def broken(subject):
     """Names of the clauses that a package breaks."""
-    return {clause.name for clause, case in cases(subject) if list(faults(clause, subject, case))}
+    return {clause.name for clause, case in cases(subject) if list(clause.check(subject, case))}
 
 
 @pytest.mark.parametrize("kind", kinds())
@@ -289,11 +289,11 @@ def test_an_action_with_a_model_of_success_may_fail_in_some_runs(failing, succes
     subject.runs, plain = 2, subject.run
     with_action(subject, success_model=success_model)
     subject.run = lambda case, seed: dataclasses.replace(plain(case, seed), done=seed >= failing)
-    assert (list(faults(CLAUSES["goals_are_reached"], subject, "drive")) == []) is kept
+    assert (list(CLAUSES["goals_are_reached"].check(subject, "drive")) == []) is kept
 
 
 def subgoal_faults(subject):
-    return list(faults(CLAUSES["subgoals_have_places"], subject, ""))
+    return list(CLAUSES["subgoals_have_places"].check(subject, ""))
 
 
 def test_a_subgoal_without_a_quantity_in_metres_need_not_be_drawn(subject):
@@ -327,7 +327,7 @@ def test_free_text_is_no_unit(unit, subject):
     context = ActionContext((column,), lambda belief: [], "drive/clearance", "box")
     with_action(subject, parameters=(dataclasses.replace(first, unit=unit), *others), context=context)
     names = ("axes_contain_rest", "parameters_have_units", "belief_values_have_units")
-    found = {name: "; ".join(faults(CLAUSES[name], subject, "")) for name in names}
+    found = {name: "; ".join(CLAUSES[name].check(subject, "")) for name in names}
     assert f"axis v {expected}" in found["axes_contain_rest"]
     assert f"drive: parameter x {expected}" in found["parameters_have_units"]
     assert f"drive: column box_x {expected}" in found["parameters_have_units"]

@@ -8,7 +8,7 @@ from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.schemas.errors import UsageError
 from tailor.tools.contract.subject import Subject
-from tailor.tools.contract.suite import CLAUSES, cases, faults
+from tailor.tools.contract.suite import CLAUSES, cases
 from tailor.tools.contract.trial import try_command
 from tests.support.bus_system import ROOT
 from tests.support.robots.known_robot import known_package
@@ -29,7 +29,7 @@ def subject(porter):
 
 def found(subject, name):
     """Faults that a clause finds."""
-    return [fault for clause, case in cases(subject) if clause.name == name for fault in faults(clause, subject, case)]
+    return [fault for clause, case in cases(subject) if clause.name == name for fault in clause.check(subject, case)]
 
 
 def with_outlets(subject, *changes):
@@ -39,7 +39,7 @@ def with_outlets(subject, *changes):
 
 
 def test_two_outlets_a_fixed_parameter_and_msg_files_keep_every_clause(subject):
-    broken = {clause.name: list(faults(clause, subject, case)) for clause, case in cases(subject)}
+    broken = {clause.name: list(clause.check(subject, case)) for clause, case in cases(subject)}
     assert broken == {name: [] for name in CLAUSES}
 
 

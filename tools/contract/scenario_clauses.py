@@ -12,7 +12,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.instantiation import instantiate
-from tailor.executive.refinement.objective.sequence import ActionSequence
+from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
 from tailor.tools.contract.clause import clause
 from tailor.tools.contract.subject import Subject
 
@@ -59,35 +59,26 @@ def belief_values_are_finite(subject: Subject, case: str) -> Iterator[str]:
 @clause("scenario", needs="body")
 def scenarios_can_be_planned(subject: Subject, case: str) -> Iterator[str]:
     """From what is believed at the start, the planner finds a plan."""
-    drawn, start = subject.scenario(case, 0)
-    if _plan(subject, drawn, subject.look(start)[0]) is None:
+    if _planned(subject, case)[0] is None:
         yield f"no plan after {CHECKS} checks"
 
 
 @clause("scenario", needs="body")
 def plans_can_be_instantiated(subject: Subject, case: str) -> Iterator[str]:
     """The plan becomes executable actions, whose variables have finite ranges."""
-    drawn, start = subject.scenario(case, 0)
-    belief = subject.look(start)[0]
-    plan = _plan(subject, drawn, belief)
-    if plan is None:
-        return
-    sequence = instantiate(plan, subject.domain, belief, drawn)
-    if not isinstance(sequence, ActionSequence):
+    sequence = _sequence(subject, case)
+    if isinstance(sequence, Failure):
         yield f"{sequence}"
-        return
-    for variable in sequence.variables:
-        if not (math.isfinite(variable.lower) and math.isfinite(variable.upper)):
-            yield f"{variable.quantity} of {variable.label} ranges from {variable.lower} to {variable.upper}"
+    elif sequence is not None:
+        for variable in sequence.variables:
+            if not (math.isfinite(variable.lower) and math.isfinite(variable.upper)):
+                yield f"{variable.quantity} of {variable.label} ranges from {variable.lower} to {variable.upper}"
 
 
 @clause("scenario", needs="body")
 def something_is_free(subject: Subject, case: str) -> Iterator[str]:
     """The plan leaves a parameter free, or an action may get a subgoal: else there is nothing to refine."""
-    drawn, start = subject.scenario(case, 0)
-    belief = subject.look(start)[0]
-    plan = _plan(subject, drawn, belief)
-    sequence = None if plan is None else instantiate(plan, subject.domain, belief, drawn)
+    sequence = _sequence(subject, case)
     if not isinstance(sequence, ActionSequence):
         return
     free = any(variable.value is None for variable in sequence.variables)
@@ -95,11 +86,18 @@ def something_is_free(subject: Subject, case: str) -> Iterator[str]:
         yield "every parameter is bound, and no action has a subgoal_action"
 
 
-def _plan(subject: Subject, drawn: Scenario, belief: Belief) -> planning.Plan | None:
-    """The plan from the abstract state as anchored in the belief."""
-    domain = subject.domain
+def _sequence(subject: Subject, case: str) -> ActionSequence | Failure | None:
+    """The plan as executable actions, or why there are none; None without a plan."""
+    plan, belief, drawn = _planned(subject, case)
+    return None if plan is None else instantiate(plan, subject.domain, belief, drawn)
+
+
+def _planned(subject: Subject, case: str) -> tuple[planning.Plan | None, Belief, Scenario]:
+    """The plan from the abstract state as anchored in the belief at the start, with both."""
+    domain, (drawn, start) = subject.domain, subject.scenario(case, 0)
+    belief, _ = subject.look(start)
     pddl = planning.parse_domain(domain.pddl)
     problem = planning.parse_problem(drawn.problem, pddl)
     facts = domain.anchor(belief, drawn, frozenset(problem.initial))
     result = planning.Search(pddl, problem.with_initial(facts)).advance(CheckBudget(CHECKS))
-    return None if result is None else result.plan
+    return None if result is None else result.plan, belief, drawn

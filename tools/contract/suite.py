@@ -12,7 +12,7 @@ from tailor.tools.contract import action_clauses, body_clauses, package_clauses,
 from tailor.tools.contract.clause import CLAUSES, Clause
 from tailor.tools.contract.subject import Subject
 
-__all__ = ["CLAUSES", "cases", "faults", "pytest_generate_tests", "test_contract"]
+__all__ = ["CLAUSES", "cases", "pytest_generate_tests", "test_contract"]
 SOURCES = (package_clauses, action_clauses, scenario_clauses, body_clauses, scene_clauses)  # their import fills CLAUSES
 
 
@@ -26,8 +26,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def test_contract(clause: Clause, subject: Subject, case: str) -> None:
     """A domain keeps to a clause."""
-    found = list(faults(clause, subject, case))
-    if found:
+    if found := list(clause.check(subject, case)):
         pytest.fail(f"{clause.text}\n" + "\n".join(f"  {fault}" for fault in found), pytrace=False)
 
 
@@ -49,8 +48,3 @@ def cases(subject: Subject) -> Iterator[tuple[Clause, str]]:
 def has(subject: Subject, part: str) -> bool:
     """Whether the package has a part; actions are run with body and sampler."""
     return bool(getattr(subject.spec, part)) and (part != "body" or bool(subject.spec.sampler))
-
-
-def faults(clause: Clause, subject: Subject, case: str) -> Iterator[str]:
-    """What the subject does wrong."""
-    return clause.check(subject, case)
