@@ -9,10 +9,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from tailor.executive.deliberation.context import PERIOD_NS
+from tailor.executive.interfaces.values import Array
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.bus.session import Session
 from tailor.runtime.processes.child import Child, stopped_in_order, tailor
@@ -25,7 +26,6 @@ from tailor.tools.launch.hosting import free_endpoint
 BURNERS = 4
 BURN = "while True: pass"
 START_S = 30.0
-TICK_S = 0.1
 MIN_SHARE = 0.5  # of the ticks of the whole time; with fewer the system was down, or hardly ran
 
 
@@ -43,7 +43,7 @@ def run(console: Console, quick: bool) -> None:
         with tempfile.TemporaryDirectory() as folder:
             recording = Path(folder) / "ticks.mcap"
             _drive(recording, seconds, burners)
-            table.add_row(case, *_row(recording, round(MIN_SHARE * seconds / TICK_S)))
+            table.add_row(case, *_row(recording, round(MIN_SHARE * seconds * 1e9 / PERIOD_NS)))
     console.print(table)
 
 
@@ -126,5 +126,5 @@ def _row(recording: Path, min_ticks: int = 1) -> list[str]:
     return [str(len(reports)), str(missed), _percentiles(work), _percentiles(late), _percentiles(np.array(delays))]
 
 
-def _percentiles(values: NDArray[np.float64]) -> str:
+def _percentiles(values: Array) -> str:
     return f"{np.percentile(values, 50):.2f} / {np.percentile(values, 99):.2f} / {values.max():.2f}"

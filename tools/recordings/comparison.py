@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tailor.executive import domains
+from tailor.executive.deliberation.context import PERIOD_NS
+from tailor.executive.interfaces.values import Array
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointCommand, PlanReport, Subgoals, VelocityCommand
@@ -24,7 +25,6 @@ from tailor.tools.recordings.executive_run import RecordedRun, decoded
 from tailor.tools.recordings.recorded_run import RecordedRuns
 
 COMMANDS = tuple(t.key.removeprefix("{robot}") for t in TOPICS.values() if t.priority == "real_time")
-PERIOD_S = 0.1  # of the executive
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class ComparedRun:
     plans: tuple[PlanReport, ...]
     subgoals: tuple[Subgoals, ...]
     axes: tuple[str, ...]  # of the commands, outlet by outlet, with units: "v [m/s]"
-    commands: NDArray[np.float64]  # shape (n, 1 + axes): seconds since the first motion, values
+    commands: Array  # shape (n, 1 + axes): seconds since the first motion, values
     result: str
 
     @property
@@ -111,7 +111,7 @@ def _published(run: RecordedRun, topic: str, kind: type) -> list[Any]:
     return [message for message in messages if isinstance(message, kind)]
 
 
-def _commands(run: RecordedRun) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+def _commands(run: RecordedRun) -> tuple[tuple[str, ...], Array]:
     """Names of the axes of all outlets, and their commands from the first motion on."""
     keys = sorted(key for key in run.published if key.endswith(COMMANDS))
     outlets = [outlet for outlet in (_Outlet.of(run, key) for key in keys) if len(outlet.rows)]
@@ -145,7 +145,7 @@ class _Outlet:
 
     names: tuple[str, ...]
     velocity: bool
-    rows: NDArray[np.float64]
+    rows: Array
 
     @classmethod
     def of(cls, run: RecordedRun, key: str) -> _Outlet:
@@ -156,9 +156,9 @@ class _Outlet:
         velocity = any(isinstance(message, VelocityCommand | JointCommand) for _, message in recorded)
         return cls(names, velocity, np.array(rows, dtype=np.float64).reshape(len(rows), -1))
 
-    def at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, times: Array) -> Array:
         """Values in force half a period after these times: outlets of one tick are published one after another."""
-        newest = np.searchsorted(self.rows[:, 0], times + PERIOD_S / 2, side="right") - 1
+        newest = np.searchsorted(self.rows[:, 0], times + PERIOD_NS / 2e9, side="right") - 1
         return self.rows[np.maximum(newest, 0), 1:]
 
 

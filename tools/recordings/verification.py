@@ -9,7 +9,7 @@ from itertools import tee
 from typing import Protocol
 
 from tailor.executive.core.state import Output
-from tailor.executive.deliberation.context import Context
+from tailor.executive.deliberation.context import PERIOD_NS, Context
 from tailor.executive.replay import RecordedTick, replay
 from tailor.runtime.gc_freeze import gc_frozen
 from tailor.runtime.platform_fingerprint import contrast, platform_fingerprint, same_kind, same_products
@@ -50,8 +50,8 @@ class Verdict:
 
     @property
     def times_real_time(self) -> float:
-        """Recorded seconds per second of verification, at ten ticks a second."""
-        return self.ticks / 10 / self.took_s
+        """Recorded seconds per second of verification."""
+        return self.ticks * PERIOD_NS / 1e9 / self.took_s
 
 
 def verify(

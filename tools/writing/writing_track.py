@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.letters import font
 from tailor.executive.domains.arm.robot import JOINTS
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointState, Message, MotorCurrents, Subgoals
 from tailor.schemas.reason_text import result_text
-
-PERIOD_S = 0.1  # an action is done one period before its waypoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +67,7 @@ def writing_track(title: str, text: str, messages: Iterable[Message]) -> Writing
     statuses = [m for m in kept if isinstance(m, ExecStatus)]
     finished = [m for m in kept if isinstance(m, ActionFinished) and m.outcome == "done"]
     begun_ns = min((s.stamp_ns for s in statuses if s.action), default=0)
+    # an action is done one period before its waypoint
     ended_ns = max((f.stamp_ns for f in finished), default=begun_ns) + round(PERIOD_S * 1e9)
     states = [m for m in kept if isinstance(m, JointState) and begun_ns <= m.stamp_ns <= ended_ns]
     states.sort(key=lambda state: state.stamp_ns)

@@ -13,6 +13,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from tailor.executive.actions.reach import PERIOD_S
 from tailor.executive.domains.arm.letters import MAX_LETTERS, is_word
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.runtime.recordings.recording import open_recording
@@ -26,7 +27,7 @@ from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
 from tailor.tools.writing.measures import roughness, waypoint_errors_rad
 from tailor.tools.writing.writing_mode import WritingMode
-from tailor.tools.writing.writing_track import PERIOD_S, WritingTrack, writing_track
+from tailor.tools.writing.writing_track import WritingTrack, writing_track
 
 REFINED = RefinementSettings()
 MODES = (
