@@ -36,6 +36,11 @@ class Recorded:
     data: bytes  # CDR
     declared: Declaration = field(default=UNDECLARED, compare=False, repr=False)  # its channel
 
+    def value(self) -> Message | Rejected | None:
+        """What its bytes mean; None of a type that Tailor does not have."""
+        kind = type_of(self.ros_type)
+        return None if kind is None else decode(kind, self.data)
+
 
 class Recording:
     """MCAP file on disk; every call reads it again, so that any size fits into memory."""

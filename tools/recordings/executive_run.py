@@ -8,12 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tailor.runtime.recordings.recording import Recorded
-from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message, Provenance, TickReport
 from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import TOPICS
-from tailor.schemas.typesystem import type_of
 
 TICK_KEY = TOPICS["tick"].key
 PROVENANCE_KEY = TOPICS["provenance"].key
@@ -32,11 +30,11 @@ class RecordedRun:
 
 def decoded(recorded: Recorded) -> Message:
     """Value of a recorded message of a Tailor type; raises UsageError if it is damaged."""
-    kind = type_of(recorded.ros_type)
-    message = decode(kind, recorded.data) if kind is not None else Rejected(f"unknown type {recorded.ros_type}")
-    if isinstance(message, Rejected):
-        raise UsageError(f"{recorded.key} number {recorded.sequence}: {message.reason}")
-    return message
+    value = recorded.value()
+    if not isinstance(value, Message):
+        reason = f"unknown type {recorded.ros_type}" if value is None else value.reason
+        raise UsageError(f"{recorded.key} number {recorded.sequence}: {reason}")
+    return value
 
 
 def executives(messages: Iterable[Recorded]) -> list[str]:
@@ -55,8 +53,7 @@ def add(run: RecordedRun, message: Recorded) -> str:
         if isinstance(provenance, Provenance):
             run.provenance = _table(provenance)
     elif message.key == TICK_KEY:
-        kind = type_of(message.ros_type)
-        report = decode(kind, message.data) if kind is not None else None
+        report = message.value()
         if not isinstance(report, TickReport):
             return report.reason if isinstance(report, Rejected) else message.ros_type
         if len({len(column) for column in _inputs(report)}) > 1:

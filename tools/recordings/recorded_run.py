@@ -9,9 +9,9 @@ from pathlib import Path
 from tailor.executive.core.state import Inputs
 from tailor.executive.replay import RecordedTick
 from tailor.runtime.recordings.recording import Recorded, Recording, open_recording
-from tailor.schemas.codec import decode, encode
-from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import Sample
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
+from tailor.schemas.messages import Message, Sample
 from tailor.schemas.topics import TOPICS
 from tailor.schemas.typesystem import type_of
 from tailor.tools.recordings.executive_run import TICK_KEY, RecordedRun, add, decoded, executives, sort_by_number
@@ -129,7 +129,5 @@ def _bounded(recording: Recording) -> Iterator[Recorded]:
 def _compile_codecs(messages: list[Recorded]) -> None:
     """Decode and encode one message of each type; this compiles their codecs, 2 ms each, once a process."""
     for message in {message.ros_type: message for message in messages}.values():
-        kind = type_of(message.ros_type)
-        value = decode(kind, message.data) if kind is not None else None
-        if value is not None and not isinstance(value, Rejected):
+        if isinstance(value := message.value(), Message):
             encode(value)

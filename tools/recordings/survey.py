@@ -8,11 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tailor.runtime.recordings.recording import Recorded, Recording
-from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, TickReport
 from tailor.schemas.reason_text import reason_text, result_text
-from tailor.schemas.typesystem import type_of
 
 
 @dataclass(slots=True)
@@ -89,14 +87,11 @@ def survey(recording: Recording) -> Survey:
         identity = (recorded.key, recorded.sender, recorded.ros_type)
         stream = counted.streams.setdefault(identity, Stream(recorded.key, recorded.ros_type, recorded.sender))
         stream.add(recorded)
-        kind = type_of(recorded.ros_type)
-        if kind is None:
-            continue
-        message = decode(kind, recorded.data)
+        message = recorded.value()
         if isinstance(message, Rejected):
             stream.rejected[message.reason] += 1
-        elif kind in _COUNTERS:
-            _COUNTERS[kind](counted, recorded, message)
+        elif count := _COUNTERS.get(type(message)):
+            count(counted, recorded, message)
     return counted
 
 

@@ -13,12 +13,12 @@ from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.new_file import new_file
-from tailor.runtime.recordings.recording import LATEST_NS, Recorded, Recording, open_recording
-from tailor.schemas.codec import decode, encode
-from tailor.schemas.errors import Rejected, UsageError
+from tailor.runtime.recordings.recording import LATEST_NS, Recording, open_recording
+from tailor.schemas.codec import encode
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import FrameTransforms, LogLine, Message, SceneShapes
 from tailor.schemas.topics import key_of
-from tailor.schemas.typesystem import ros_type, type_of
+from tailor.schemas.typesystem import ros_type
 from tailor.tools.scenes.scene_feed import SceneFeed
 
 DERIVED = tuple(ros_type(kind) for kind in (SceneShapes, FrameTransforms, LogLine))
@@ -57,8 +57,8 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
             continue
         sent = (recorded.log_ns, recorded.data, recorded.publish_ns, recorded.sequence)
         _check(writer.copy(recorded.key, recorded.declared, sent), writer, recorded.key)
-        message = _decoded(recorded) if feed.wants(recorded.key) else None
-        made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if message is not None else []
+        message = recorded.value() if feed.wants(recorded.key) else None
+        made = feed.messages_after(recorded.log_ns / 1e9, recorded.key, message) if isinstance(message, Message) else []
         for topic, each in made:
             key = key_of(topic, feed.robot)
             added[key] += 1
@@ -72,9 +72,3 @@ def _write(writer: McapWriter, recording: Recording, feed: SceneFeed, added: Cou
 def _check(written: bool, writer: McapWriter, key: str) -> None:
     if not written:
         raise UsageError(f"{writer.path}: no room for {key}, expected at most {MAX_KEYS} keys, scenes included")
-
-
-def _decoded(recorded: Recorded) -> Message | None:
-    kind = type_of(recorded.ros_type)
-    message = None if kind is None else decode(kind, recorded.data)
-    return None if isinstance(message, Rejected) else message
