@@ -10,7 +10,7 @@ from tailor.runtime.bus.opening import open_local_router, open_router
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.messages import EStop
-from tailor.tools.commands.run.record import DISCONNECTED, RECONNECTED
+from tailor.tools.recordings.health_text import DISCONNECTED, RECONNECTED
 from tests.support.bus_system import ROOT, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until
 

@@ -14,7 +14,6 @@ from contextlib import nullcontext
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 from rich.live import Live
@@ -25,7 +24,7 @@ from tailor.runtime.bus.service import ServiceServer, no_service
 from tailor.runtime.clock import wall_ns
 from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.recordings.new_file import EXISTS, check_room
-from tailor.runtime.recordings.recorder import Health, Limits, Recorder
+from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection, selection
 from tailor.runtime.recordings.snapshot import SnapshotBuffer
@@ -36,12 +35,11 @@ from tailor.tools.cli.number_checks import check_within
 from tailor.tools.cli.plain_text import note, plain
 from tailor.tools.cli.selection_flags import configure_selection
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, configure_sender, open_bus, sender_of
+from tailor.tools.recordings import health_text
 from tailor.tools.recordings.recorder_bus import RecorderBus
 
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9
 MAX_LIMIT = 1e9  # MB or seconds, beyond any disk and run
-DISCONNECTED = "bus disconnected: nothing is recorded until it reconnects"
-RECONNECTED = "bus reconnected: recording continues"
 SNAPSHOT_KEY = "recorder/snapshot"
 
 
@@ -79,9 +77,9 @@ def run(arguments: argparse.Namespace) -> int:
         notifier.stopping()
         health = recorder.close()  # before the session, which takes ten seconds to close while its router hangs
     if arguments.json:
-        print(json.dumps(_json_value(health)), flush=True)
+        print(json.dumps(health_text.json_value(health)), flush=True)
     elif not arguments.quiet or health.drops or health.unwritten or health.mixed or health.disk_error:
-        print(_line(health), file=sys.stderr)
+        print(health_text.line(health), file=sys.stderr)
     return 1 if health.drops or health.unwritten or health.disk_error else 0
 
 
@@ -143,27 +141,16 @@ def _record(
             bus.renew(time.monotonic_ns())
             if bus.connected != connected:
                 connected = not connected
-                note(RECONNECTED if connected else DISCONNECTED, to_stderr=True)
+                note(health_text.RECONNECTED if connected else health_text.DISCONNECTED, to_stderr=True)
             notifier.alive()
-            if (losses := _losses(recorder.health, connected)) != status:
+            if (losses := health_text.losses(recorder.health, connected)) != status:
                 status = losses
                 notifier.status(status)
             if bus.requests is not None and isinstance(recorder, SnapshotRecorder):
                 _serve(recorder, bus.requests)
             if live is not None:
-                live.update(Text(plain(_line(recorder.health))))
+                live.update(Text(plain(health_text.line(recorder.health))))
             time.sleep(PERIOD_S)
-
-
-def _losses(health: Health, connected: bool) -> str:
-    """What this recording lacks, for the supervisor; empty while it is whole."""
-    if health.disk_error:
-        return f"disk: {health.disk_error}"
-    if not connected:
-        return DISCONNECTED
-    if health.drops or health.unwritten:
-        return f"{health.drops.total() + health.unwritten} messages dropped"
-    return "too many senders: some messages are recorded without theirs" if health.mixed else ""
 
 
 def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:
@@ -179,27 +166,3 @@ def _serve(recorder: SnapshotRecorder, requests: ServiceServer) -> None:
 def _beginning(arguments: argparse.Namespace) -> str:
     what = f"the last {arguments.snapshot:g} s, in memory" if arguments.snapshot else "into a file"
     return f"recording {what}, waiting for messages on {bus_settings(arguments).endpoint}; Ctrl-C ends it"
-
-
-def _json_value(health: Health) -> dict[str, Any]:
-    return {
-        "files": [str(path) for path in health.files],
-        "messages": health.messages,
-        "unwritten": health.unwritten,
-        "bytes": health.bytes,
-        "dropped": health.drops.total(),
-        "without_sender": health.mixed.total(),
-        "disk_error": health.disk_error or None,
-    }
-
-
-def _line(health: Health) -> str:
-    place = health.files[-1] if health.files else "in memory"
-    text = f"{place}: {health.messages} messages, {health.bytes / 1e6:.1f} MB"
-    if health.unwritten:
-        text += f", {health.unwritten} not written"
-    if health.drops:
-        text += f", {health.drops.total()} dropped"
-    if health.mixed:
-        text += f", {health.mixed.total()} without their sender"
-    return text + (f", disk: {health.disk_error}" if health.disk_error else "")
