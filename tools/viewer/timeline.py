@@ -64,7 +64,7 @@ class RunTimeline:
         self._explainer = explainer
         self._scenes = RobotScenes()
         self._silence = Silence()
-        self._action = (-1, "")
+        self._action_index = -1  # of the action in execution
         self._last: dict[str, Any] = {}  # by kind: last fields of states
         self._outlines: dict[str, Outline] = {}  # by kind: the last ones
         self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
@@ -153,11 +153,8 @@ class RunTimeline:
             "result": result_text(message.result, message.result_reason, message.result_detail),
         }
         rows = self._changed("state", state)
-        action = (message.action_index if message.action else -1, message.action)
-        self._action = action
-        if self._last.get("action") != action:
-            self._last["action"] = action
-            rows.append(("action", {"index": action[0], "action": action[1]}))
+        self._action_index = message.action_index if message.action else -1
+        rows += self._changed("action", {"index": self._action_index, "action": message.action})
         if self._due(at_s, "belief"):
             rows += self._sampled(at_s, "belief", event_fields.belief(message))
         return rows + self._path(at_s, "believed", self._scenes.of_belief(message.belief))
@@ -167,7 +164,7 @@ class RunTimeline:
         shown = flat(scene, self._scenes.seen_from) if scene is not None and self._due(at_s, source) else None
         if shown is None:
             return []
-        rows = self._sampled(at_s, source, {**event_fields.scene(shown), "index": self._action[0]})
+        rows = self._sampled(at_s, source, {**event_fields.scene(shown), "index": self._action_index})
         outlines = ((f"outline {source} {name}", each) for name, each in shown.outlines.items())
         return [row for kind, each in outlines for row in self._outline(kind, each)] + rows
 
