@@ -62,22 +62,11 @@ class Point:
 
     def recipe(self, shipped: Recipe, scenario: str, seed: int) -> Recipe:
         """Recipe of a set of models; learned as those that ship."""
-        half, source = (0 if self.method == "random" else self.episodes // 2), cast("Any", self.method)
-        rounds = (Round(source, (scenario,), half, POOL),) if half else ()
-        beside = min(shipped.beside, BESIDE)
-        count = self.episodes - half
+        half = 0 if self.method == "random" else self.episodes // 2
+        rounds = (Round(cast("Any", self.method), (scenario,), half, POOL),) if half else ()
+        plain = replace(shipped, random=(), uncertain=(), calibration=(), beside=min(shipped.beside, BESIDE))
         training = replace(shipped.training, seed=seed)
-        return replace(
-            shipped,
-            episodes=count,
-            random=(),
-            uncertain=(),
-            beside=beside,
-            seed=seed,
-            rounds=rounds,
-            calibration=(),
-            training=training,
-        )
+        return replace(plain, episodes=self.episodes - half, seed=seed, rounds=rounds, training=training)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -104,7 +93,6 @@ def run(arguments: argparse.Namespace) -> int:
     settings = argparse.Namespace(
         **{
             **vars(arguments),
-            "domain": domain,
             "scenario": arguments.scenario or domains.scenarios(domain)[0],
             "sets": arguments.sets or (QUICK_SETS if quick else SETS),
             "starts": arguments.starts or (QUICK_STARTS if quick else STARTS),
