@@ -19,7 +19,6 @@ class Equivalence:
     difference: float
     ci95: tuple[float, float]
     p_different: float  # two-sided paired t-test
-    margin: float
     p_equivalent: float  # the larger of both one-sided tests; small: the means are less than the margin apart
 
 
@@ -38,8 +37,8 @@ def equivalence(first: ArrayLike, second: ArrayLike, margin: float) -> Equivalen
     mean, freedom = float(apart.mean()), len(apart) - 1
     error = float(stats.sem(apart))
     if error == 0:  # all differences are one and the same: nothing to test
-        return Equivalence(mean, (mean, mean), float(mean == 0), margin, float(abs(mean) >= margin))
+        return Equivalence(mean, (mean, mean), float(mean == 0), float(abs(mean) >= margin))
     half = float(stats.t.ppf(0.975, freedom)) * error
     sides = [float(stats.t.sf((margin + sign * mean) / error, freedom)) for sign in (1, -1)]
     p_different = float(2 * stats.t.sf(abs(mean) / error, freedom))
-    return Equivalence(mean, (mean - half, mean + half), p_different, margin, max(sides))
+    return Equivalence(mean, (mean - half, mean + half), p_different, max(sides))
