@@ -118,9 +118,13 @@ def train_regression(
 
 
 def _judging(finished: Sequence[Episode], judges: Callable[[Episode], bool]) -> list[Episode]:
-    """Episodes that judge intervals and test: none selected for what a model did not know, unless all are."""
+    """Episodes that judge intervals and test: none selected for what a model did not know, unless nearly all are.
+
+    Of a few others the test might hold none, and one error would be the width of every interval.
+    """
     judging = [episode for episode in finished if judges(episode)]
-    return [episode for episode in judging if not episode.selected] or judging
+    usual = [episode for episode in judging if not episode.selected]
+    return usual if len(usual) >= MIN_EPISODES else judging
 
 
 def _choices(target: RegressionTarget, episodes: Sequence[Episode]) -> Examples | None:
