@@ -25,7 +25,8 @@ from tailor.models.training.training import Trained
 Array = NDArray[np.float64]
 GOLDEN = 32  # examples in a card
 MAX_FACTOR = 3.0  # predictions above three times the longest episode, or its energy, are invalid
-ROUNDING = 1e-5  # s or J: more than graph and learner differ by
+ROUNDING = 1e-5  # s or J: more than graph and learner differ by,
+ROUNDING_SHARE = 1e-6  # or this of the largest mean, if that is more
 LIBRARIES = ("numpy", "onnx", "onnxruntime", "scikit-learn", "tailor")
 
 
@@ -169,6 +170,7 @@ def golden(data: DataSet, learner: Any, about: Publication) -> dict[str, Sequenc
 def _off_thresholds(arguments: Array, learner: Any, space: FeatureSpace) -> Array:
     """The rows whose interval does not depend on rounding errors of the standard deviation."""
     features = space(arguments)
-    _, std = learner.predict_with_std(features)
-    ends = [learner.intervals_.around(features, 0.0, std + step)[1] for step in (-ROUNDING, 0.0, ROUNDING)]
+    mean, std = learner.predict_with_std(features)
+    error = max(ROUNDING, ROUNDING_SHARE * float(np.abs(mean).max()))
+    ends = [learner.intervals_.around(features, 0.0, std + step)[1] for step in (-error, 0.0, error)]
     return np.asarray(arguments[(ends[0] == ends[1]) & (ends[1] == ends[2])])

@@ -142,21 +142,6 @@ def test_selected_episodes_are_learned_from_but_judge_no_intervals() -> None:
     assert np.array_equal(alone.learner.predict_interval(rows), without.learner.predict_interval(rows))
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.usefixtures("few_first_ticks")
-def test_selected_episodes_judge_intervals_where_hardly_any_other_is_there() -> None:
-    """A quarter of three episodes may be none to test on, and one error would be the width of every interval."""
-    episodes = data_set(240).episodes
-    trained = train_duration([replace(e, selected=e.number >= 3) for e in episodes], projective, "linear", 3)
-    assert trained.test["n"] == 60
-    rows = projective(np.stack([e.ticks[0] for e in episodes]))
-    without = train_duration(episodes, projective, "linear", 3)
-    for ours, those in zip(*(each.learner.predict_interval(rows) for each in (trained, without)), strict=True):
-        assert np.array_equal(ours, those)
-    enough = train_duration([replace(e, selected=e.number >= 40) for e in episodes], projective, "linear", 3)
-    assert enough.test["n"] < 30
-
-
 def with_failures(data: DataSet, failing: int) -> list[Episode]:
     return [replace(e, success=e.number >= failing, failure="") for e in data.episodes[:50]]
 
