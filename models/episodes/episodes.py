@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tailor.models.episodes.distinct import check_distinct
 from tailor.models.episodes.manifest import read_manifest
 from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
 from tailor.models.episodes.sources import CALIBRATES, PROBE, SELECTED, end_of, probe_of, source_files, source_of
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 SHORT_EPISODES = 1000  # of a single tick, in one row group
 TICK_S = 0.1  # episodes are recorded at 10 Hz (paper 5.1)
-BESIDE_ONE = " beside one object"  # end of the "source" of random episodes
 UNOBSERVED = "unobserved"  # "failure" of an episode whose success was not observed
 
 
@@ -165,11 +165,11 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     """Merge data sets of one action; ranges are those of the first, `sources` in the manifest names all.
 
     Raises:
-      UsageError: Robots, actions or arguments differ, or two hold the same episodes.
+      UsageError: Robots, actions or arguments differ, or two hold the same episodes, tasks or runs.
     """
     first, *others = sets
     for one, other in itertools.combinations(sets, 2):
-        _check_distinct(one, other)
+        check_distinct(one, other)
     for other in others:
         for key in ("robot", "action"):
             if other.manifest[key] != first.manifest[key]:
@@ -188,28 +188,6 @@ def merge(sets: Sequence[DataSet]) -> DataSet:
     }
     digest = hashlib.sha256("".join(each.sha256 for each in sets).encode()).hexdigest() if others else first.sha256
     return DataSet({**first.manifest, **about}, tuple(episodes), digest)
-
-
-def _check_distinct(one: DataSet, other: DataSet) -> None:
-    """Raise UsageError if two data sets hold the same episodes, or tasks: the test would not be of unseen ones."""
-    action, seed = one.manifest["action"], one.manifest.get("seed")
-    if _draw(one.manifest) == _draw(other.manifest) is not None:
-        raise UsageError(f"two data sets hold the same episodes of {action} (seed {seed}), expected each once")
-    ours = {episode.ticks.tobytes() for episode in one.episodes}
-    same = sum(episode.ticks.tobytes() in ours for episode in other.episodes)
-    if same:
-        raise UsageError(f"two data sets hold {same} same episodes of {action}, expected each once")
-
-
-def _draw(manifest: Mapping[str, Any]) -> list[Any] | None:
-    """The manifest entries that determine the tasks of a data set; None if they were not drawn from a seed.
-
-    Random tasks beside an object are those without it: the object is drawn after them.
-    """
-    if manifest.get("seed") is None:
-        return None
-    source = str(manifest.get("source")).removesuffix(BESIDE_ONE)
-    return [source, *(manifest.get(key) for key in ("seed", "stream", "scenarios", "models_sha256", "profile"))]
 
 
 def _episodes(table: pa.Table, names: Sequence[str], manifest: Mapping[str, Any]) -> list[Episode]:

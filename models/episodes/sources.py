@@ -20,6 +20,8 @@ DRAW = (
 SELECTED = ("situations", CANDIDATES)  # entries of a manifest whose episodes were selected among so many
 PROBE = 6  # first episodes of a data set that a card repeats, to be run again where the source has changed
 CALIBRATES = "calibrates"  # entry of a manifest: its episodes correct the intervals of the models that chose them
+BESIDE_ONE = " beside one object"  # end of the "source" of random episodes
+RUN_NUMBERS = 100  # from the number of a run's first episode to that of the next run's
 SHORT = 12  # digits of a hash of a file in a card
 
 

@@ -17,7 +17,7 @@ examples:
   tailor gather agilo goToPose --beside-object --episodes 3000 --seed 8 --out data/agilo-beside
   tailor gather agilo goToPose --beside-objects 20 --episodes 1400 --seed 31 --out data/agilo-objects
   tailor gather agilo --on-policy approach-dribble waypoints --episodes 160 --out data/agilo-policy
-  tailor gather agilo --on-policy approach-dribble --horizon 1 --episodes 200 --out data/agilo-greedy
+  tailor gather agilo --on-policy approach-dribble --horizon 1 --episodes 200 --seed 8 --out data/agilo-greedy
   tailor gather agilo --on-policy approach-dribble --episodes 300 --seed 9 --calibrates --out data/agilo-intervals
   tailor gather agilo --active approach-dribble waypoints --episodes 300 --out data/agilo-active
   tailor gather agilo approachBall --uncertain --episodes 300 --out data/agilo-uncertain

@@ -105,7 +105,10 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
-    data = merge([without_context(each) for each in alone or sets])
+    try:
+        data = merge([without_context(each) for each in alone or sets])
+    except UsageError as error:
+        raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
     spaces = spaces_by_kind(request, data.names, folders[0])
     for space in {space.name: space for space in spaces.values()}.values():
         if fault := fault_in_data(space, data.episodes):

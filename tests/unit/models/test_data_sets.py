@@ -224,6 +224,24 @@ def test_an_episode_of_two_data_sets_would_be_in_training_and_test(folder: Path,
         merge([one, shared])
 
 
+def test_runs_of_one_seed_begin_alike_whatever_chose_in_them(folder: Path, tmp_path: Path) -> None:
+    """Greedy and refined runs, say, or the rounds of two models: nearly the same episodes would judge a model."""
+
+    def runs(data: DataSet, first: int, **entries: object) -> DataSet:
+        numbered = (replace(each, number=100 * (first + k)) for k, each in enumerate(data.episodes))
+        about = {"on_policy": True, "domain": "toy", "seed": 7, "scenarios": ["a"], **entries}
+        return DataSet({**data.manifest, **about}, tuple(numbered), str(first))
+
+    one, other = read_data_set(folder), read_data_set(make(tmp_path / "other", seed=2))
+    refined = runs(one, 0, source="refined choices")
+    greedy = {"source": "greedy choices", "horizon": 1}
+    with pytest.raises(UsageError, match=r"goToPose of 2 runs from the same starts \(seed 7\).*another --seed"):
+        merge([refined, runs(other, 4, **greedy)])
+    apart = (runs(other, 6, **greedy), runs(other, 4, **greedy, seed=8), runs(other, 4, **greedy, on_policy=False))
+    for distinct in (*apart, runs(other, 4, seed=None, source="recordings")):
+        assert len(merge([refined, distinct]).episodes) == 12
+
+
 def test_random_tasks_beside_an_object_are_those_without_it(folder: Path, tmp_path: Path) -> None:
     alone, beside = read_data_set(folder), read_data_set(make(tmp_path / "beside", seed=2))
     alone = replace(alone, manifest={**alone.manifest, "source": "lock-step, random arguments"})

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tailor.executive import domains
 from tailor.models.episodes.episodes import read_data_set
+from tailor.models.episodes.sources import RUN_NUMBERS
 from tailor.models.runtime import load_robot
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder
@@ -19,7 +20,6 @@ from tailor.tools.evaluations.models import fresh, model_rows
 from tailor.tools.evaluations.models.model_rows import Row
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
-from tailor.tools.learning.gathering.policy_runs import MAX_ACTIONS
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 RUNS = 400  # of each scenario of --on-policy
@@ -68,6 +68,6 @@ def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
         for action in modelled_actions(domain):
             data = read_data_set(folder / action)
             if any(episode.finished for episode in data.episodes):
-                columns = model_rows.duration_columns(durations, f"{action}/duration", data, first, MAX_ACTIONS)
+                columns = model_rows.duration_columns(durations, f"{action}/duration", data, first, RUN_NUMBERS)
                 rows.append({"domain": domain, "action": action, "chosen_in": scenario, **columns})
     return rows

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from tailor.executive import domains
 from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.context_columns import CONTEXT
-from tailor.models.episodes.episodes import BESIDE_ONE
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
-from tailor.models.episodes.sources import SELECTED, short_hashes
+from tailor.models.episodes.sources import BESIDE_ONE, SELECTED, short_hashes
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256

@@ -14,7 +14,7 @@ from tailor.executive import domains
 from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.models.episodes.episodes import Episode
-from tailor.models.episodes.sources import CALIBRATES
+from tailor.models.episodes.sources import CALIBRATES, RUN_NUMBERS
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
 from tailor.tools.learning.gathering.run_data_sets import write
@@ -25,7 +25,6 @@ from tailor.tools.parallel.pool import completed
 
 FIRST_SEED = 2_000_000_000  # of scenarios and noise; disjoint from the seeds of evaluations
 CHUNK = 10  # runs whose episodes are written together
-MAX_ACTIONS = 100  # per run; offset between the numbers of its episodes
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +98,7 @@ def _chunk(policy: Policy, first: int) -> list[tuple[str, Episode]]:
     """Episodes of some runs, from number `first`, with the names of their actions."""
     cut = []
     for k, (scenario, seed) in enumerate(policy.jobs[first : first + CHUNK]):
-        base = MAX_ACTIONS * (first + k)
+        base = RUN_NUMBERS * (first + k)
         cut += [(a, replace(e, number=base + i)) for i, (a, e) in enumerate(_run(policy, scenario, seed))]
     return cut
 

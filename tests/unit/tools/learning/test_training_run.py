@@ -142,7 +142,11 @@ def test_a_card_names_the_command_that_gathered_its_episodes(entries, flags) -> 
             ["own", "copied"],
             "copied/goToPose-old: episodes of action 'goToPose', expected 'goToPose-old' by its name",
         ),
-        ("agilo", ["own", "own"], "two data sets hold the same episodes of goToPose (seed 1), expected each once"),
+        (
+            "agilo",
+            ["own", "own"],
+            "own/goToPose, own/goToPose: two data sets hold the same episodes of goToPose (seed 1), expected each once",
+        ),
     ],
 )
 def test_data_of_something_else_is_refused_before_anything_is_written(tmp_path, monkeypatch, robot, data, message):
