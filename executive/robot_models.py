@@ -9,8 +9,10 @@ from typing import Any
 from tailor.executive import domains
 from tailor.executive.deliberation.context import Context
 from tailor.executive.interfaces.action import unchanged
+from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.sequence import InstantiatedAction
+from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.executive.refinement.objective.stage_models import models_of
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import models_folder, spec_of_robot
@@ -82,10 +84,15 @@ def check_models(context: Context) -> None:
     A tick would find out while the robot is armed. Which ones are needed depends on the settings, too: energy counts
     only where it has a weight.
     """
+    check_all_named(context.domain, context.models, context.settings.refinement)
+
+
+def check_all_named(domain: Domain, models: Models, settings: RefinementSettings) -> None:
+    """As `check_models`, before there is a scenario."""
     missing = []
-    for action in context.domain.actions.values():
+    for action in domain.actions.values():
         try:
-            models_of(InstantiatedAction(action, 0, ()), context.models, context.settings.refinement)
+            models_of(InstantiatedAction(action, 0, ()), models, settings)
         except UsageError as error:
             missing.append(str(error))
     if missing:

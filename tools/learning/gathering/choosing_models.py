@@ -10,9 +10,10 @@ from typing import Any, Protocol
 from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.executive.robot_models import load_models
+from tailor.executive.robot_models import check_all_named, load_models
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import models_folder
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare
 from tailor.tools.parallel.software import models_sha256
@@ -30,6 +31,22 @@ def cached_models(robot: str, zoo: str) -> Models:
 def models_hash(robot: str, zoo: str) -> str:
     """SHA-256 over the models that choose the arguments: other models give other episodes."""
     return models_sha256(cached_models(robot, zoo))
+
+
+def complete_hash(name: str, zoo: str) -> str:
+    """The `models_hash` of models with which the executive of a domain can run.
+
+    Raises:
+      UsageError: An action needs a model that there is not. The first run would find out, when manifests name the hash
+        already, and refuse better models.
+    """
+    domain = domains.load(name)
+    models = cached_models(domain.robot, zoo)
+    try:
+        check_all_named(domain, models, UNPROVEN)
+    except UsageError as error:
+        raise UsageError(f"{zoo or models_folder(domain.robot)}: {error}") from None
+    return models_hash(domain.robot, zoo)
 
 
 class Chosen(Protocol):
@@ -70,7 +87,8 @@ def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], r
     """Create the folders of data sets that models choose; see `prepare`.
 
     Raises:
-      UsageError: See `prepare`; or some runs are marked as finished, but the data set of an action is gone.
+      UsageError: See `prepare`; or some runs are marked as finished, but the data set of an action is gone; or an
+        action needs a model that there is not.
     """
     actions = modelled_actions(chosen.domain)
     marked = min((path for marks in MARKS for path in chosen.folder.glob(marks)), default=None)
@@ -82,7 +100,7 @@ def prepare_chosen(chosen: Chosen, about: dict[str, Any], runs: Sequence[Any], r
         "seed": chosen.seed,
         "scenarios": list(chosen.scenarios),
         **({"profile": chosen.profile} if chosen.profile else {}),
-        "models_sha256": models_hash(domains.load(chosen.domain).robot, chosen.zoo),
+        "models_sha256": complete_hash(chosen.domain, chosen.zoo),
         "runs_sha256": runs_sha256(chosen.domain),
     }
     prepare(chosen.domain, chosen.folder, actions, entries, runs, resume)

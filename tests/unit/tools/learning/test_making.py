@@ -49,7 +49,7 @@ def trained(monkeypatch) -> list:
 
     monkeypatch.setattr(training, "_train", train)
     monkeypatch.setattr(steps, "check_complete", lambda _: None)
-    monkeypatch.setattr(choosing_models, "models_hash", lambda *_: "models")
+    monkeypatch.setattr(choosing_models, "complete_hash", lambda *_: "models")
     monkeypatch.setattr(manifests, "RANGE_DRAWS", 64)
     monkeypatch.setattr(policy_runs, "_run", lambda *_: [])
     monkeypatch.setattr(random_episodes, "gather", lambda spec, parts, _: ((20, 1.0, 1.0) for _ in parts))

@@ -1,13 +1,16 @@
 """Runs of the executive from which models learn."""
 
+import re
+import shutil
 from collections import Counter
 from pathlib import Path
 
 import pytest
 
+from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering.active_episodes import Active
-from tailor.tools.learning.gathering.policy_runs import Policy
+from tailor.tools.learning.gathering.policy_runs import Policy, run_policy
 
 
 def test_every_run_has_a_seed_of_its_own():
@@ -40,3 +43,13 @@ def test_situations_of_two_seeds_never_meet():
 def test_more_situations_than_lie_between_two_seeds_are_refused(drawn):
     with pytest.raises(UsageError, match=r"1[02]000[01] situations .*expected at most 100000: more would be those of"):
         drawn()
+
+
+def test_a_missing_model_is_noticed_before_any_folder_is_made(tmp_path):
+    """The first run would need it. By then manifests name the models that choose, and refuse better ones."""
+    zoo, out = tmp_path / "zoo", tmp_path / "data"
+    shutil.copytree(ZOO / "agilo", zoo / "agilo", ignore=shutil.ignore_patterns("clearance.*"))
+    missing = rf"{re.escape(str(zoo))}: action goToPose needs the model goToPose/clearance, expected one of those"
+    with pytest.raises(UsageError, match=missing):
+        run_policy(Policy("soccer", ("approach",), 1, 7, str(zoo), out), 1)
+    assert not out.exists()
