@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tailor.models.cards.json_shape import MAX_QUANTITY
+from tailor.models.episodes.repeated_values import check_repeated
 from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ PER_EPISODE = {
     IN_CONTEXT: ("is_boolean", "true or false"),
 }
 OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
+MAX_ROWS = 2_000_000  # two days at 10 Hz; a megabyte may hold billions, which memory does not
 
 
 def read_part(path: Path, names: Sequence[str]) -> pa.Table:
@@ -42,6 +44,9 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
     import pyarrow.parquet as pq
 
     try:
+        rows = pq.read_metadata(path).num_rows
+        if rows > MAX_ROWS:
+            raise UsageError(f"{path}: has {rows} rows, expected at most {MAX_ROWS} in a part of a data set")
         table = pq.read_table(path, page_checksum_verification=True)
         table.validate(full=True)  # text that is not UTF-8, say
     except (pa.ArrowException, OSError) as error:
@@ -55,6 +60,7 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
         raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
     checked = table.select(list(dict.fromkeys(wanted)))
     _check_columns(checked, numbers, path)
+    check_repeated(checked, names, path)
     return checked
 
 

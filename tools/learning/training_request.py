@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -105,6 +105,14 @@ def spaces_by_kind(request: TrainingRequest, arguments: tuple[str, ...], folder:
     energy = request.energy_features or ENERGY_FEATURES.get(plain.name, plain.name)
     of_energy = _space(energy, arguments, folder)
     return {"duration": plain, "duration_beside": plain, "energy": of_energy, "success": plain}
+
+
+def check_units(space: FeatureSpace, arguments: Sequence[Mapping[str, Any]]) -> None:
+    """Raise UsageError if a column of a data set, as its manifest declares it, has another unit than features take."""
+    for declared, taken in zip(arguments, space.arguments, strict=True):
+        unit = declared.get("unit")  # empty: not stated
+        if unit and unit != taken.unit:
+            raise UsageError(f"{taken.name} is in '{unit}', expected '{taken.unit}' by features '{space.name}'")
 
 
 def context_space(arguments: tuple[str, ...], folder: Path) -> FeatureSpace:

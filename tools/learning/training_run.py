@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,6 +17,7 @@ from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.learning.training_request import (
     TrainingRequest,
     check_owner,
+    check_units,
     context_space,
     data_sets,
     reproduction_command,
@@ -101,31 +103,45 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     """
     from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
-    from tailor.models.export.space_check import fault_in_data
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
-    try:
-        data = merge([without_context(each) for each in alone or sets])
-    except UsageError as error:
-        raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
+    with _named(folders):
+        data = merge(own := [without_context(each) for each in alone or sets])
     spaces = spaces_by_kind(request, data.names, folders[0])
-    for space in {space.name: space for space in spaces.values()}.values():
-        if fault := fault_in_data(space, data.episodes):
-            raise UsageError(f"{', '.join(map(str, folders))}: {fault}")
+    with _named(folders):
+        _check_columns(spaces.values(), own, data)
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
     command = reproduction_command(request, spaces, manifests)
-    own = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
-    every = (*own, *context_jobs(sets, request, folders[0]))
+    jobs = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
+    every = (*jobs, *context_jobs(sets, request, folders[0]))
     for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
-        try:
+        with _named(folders):
             trained = train(source.episodes, space, learner, request.seed)
-        except UsageError as error:
-            raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
         _publish(request, source, trained, kind, learner, space, command)
-        if kind == "duration" and all(job[1] != "duration_beside" for job in own):
+        if kind == "duration" and all(job[1] != "duration_beside" for job in jobs):
             _remove_beside(request, data.manifest["action"])
         yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
+
+
+@contextmanager
+def _named(folders: Sequence[Path]) -> Iterator[None]:
+    """Errors name the data sets whose episodes are trained on."""
+    try:
+        yield
+    except UsageError as error:
+        raise UsageError(f"{', '.join(map(str, folders))}: {error}") from None
+
+
+def _check_columns(spaces: Iterable[FeatureSpace], sets: Sequence[DataSet], data: DataSet) -> None:
+    """Raise UsageError if a column has another unit than features take, or a feature of it is not finite."""
+    from tailor.models.export.space_check import fault_in_data
+
+    for space in {space.name: space for space in spaces}.values():
+        for each in sets:
+            check_units(space, each.manifest["arguments"])
+        if fault := fault_in_data(space, data.episodes):
+            raise UsageError(fault)
 
 
 def _remove_beside(request: TrainingRequest, action: str) -> None:

@@ -14,6 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tailor.models.episodes import part_reader
 from tailor.models.episodes.episodes import DataSet, Episode, merge, read_data_set, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.schemas.errors import UsageError
@@ -117,6 +118,23 @@ def no_utf_8(path: Path) -> None:
         (change_all("duration_s", [1.0] * 5 + [1e39]), "column duration_s holds numbers beyond 1e.09"),
         (change_all("work_j", [float("nan")] * 5 + [-1e300]), "column work_j holds numbers beyond 1e.09"),
         (no_utf_8, "cannot be read .*Invalid UTF8 sequence"),
+        (
+            change("duration_s", 2.5),
+            r"column duration_s holds 2.5 in row 3, of episode 0, expected .*",
+        ),
+        (
+            change("success", False),
+            "column success holds False in row 3, of episode 0, expected True",
+        ),
+        (change("finished", False), "column finished holds False in row 3, of episode 0, expected True"),
+        (
+            change("failure", "fell"),
+            "column failure holds 'fell' in row 3, of episode 0, expected ''",
+        ),
+        (
+            change("asked_xg", 2.5),
+            r"column asked_xg holds 2.5 in row 3, of episode 0, expected .*",
+        ),
         (change_all("in_context", [1] * 6), "column in_context holds int64, expected true or false in every row"),
     ],
 )
@@ -126,6 +144,14 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         read_data_set(folder)
     assert str(folder / PART) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_part_that_no_memory_holds_is_refused_unread(folder: Path, monkeypatch) -> None:
+    """Two megabytes of equal numbers may be twenty million rows, which take gigabytes."""
+    monkeypatch.setattr(part_reader, "MAX_ROWS", 5)
+    monkeypatch.setattr(pq, "read_table", None)
+    with pytest.raises(UsageError, match=r"part-000000-000006.parquet: has \d+ rows, expected at most 5 in a part"):
+        read_data_set(folder)
 
 
 @pytest.mark.filterwarnings("error")

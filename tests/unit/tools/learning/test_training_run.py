@@ -10,7 +10,7 @@ import pytest
 
 from tailor.models.cards.card import read_card
 from tailor.models.episodes.episodes import UNOBSERVED, DataSet, Episode, write_part
-from tailor.models.episodes.manifest import write_manifest
+from tailor.models.episodes.manifest import read_manifest, write_manifest
 from tailor.models.features.features import FeatureSpace, quantities
 from tailor.models.training import success_training
 from tailor.schemas.errors import UsageError
@@ -84,6 +84,17 @@ def written(folder: Path, seed: int, late_s: float = 0.0, **entries: object) -> 
     about = {"robot": "agilo", "action": "goToPose", "arguments": arguments, "seed": seed, **entries}
     write_manifest(folder, about)
     return folder
+
+
+def test_columns_in_another_unit_than_features_take_are_refused(tmp_path) -> None:
+    """Trained on millimetres, a model errs no more than on metres, until the executive asks it in metres."""
+    folder = written(tmp_path / "goToPose", 1)
+    declared = read_manifest(folder)
+    write_manifest(folder, {**declared, "arguments": [{**each, "unit": "mm"} for each in declared["arguments"]]})
+    expected = r"goToPose: x is in 'mm', expected 'm' by features 'projective'"
+    with pytest.raises(UsageError, match=expected):
+        list(train_action([folder], TrainingRequest("agilo", tmp_path / "zoo")))
+    assert not (tmp_path / "zoo").exists()
 
 
 def test_no_duration_is_learned_from_episodes_that_calibrate_and_cards_count_them(tmp_path) -> None:
