@@ -8,6 +8,7 @@ from huggingface_hub import EvalResult, ModelCardData
 
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 from tailor.models.cards.card_shape import TEST_FIGURES
+from tailor.tools.learning.card_lines import missed_failures
 
 TAGS = ["robotics", "onnx", "tailor", "action-models"]
 METRICS = {  # of the hub, by kind: name of the metric, entry of the card's test
@@ -80,14 +81,14 @@ def _text(robot: str, cards: Sequence[Card]) -> Iterator[str]:
 def _error(card: Card) -> str:
     test, kind = card["test"], card["kind"]
     if kind in SUCCESS_KINDS:
-        return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed failures"
+        return f"{test['accuracy_pct']:.1f} % correct; missed failures: {missed_failures(test)}"
     (error, mean), unit = TEST_FIGURES[kind], UNITS[kind]
     return f"{test[error]:.3f} {unit} of {test[mean]:.1f} {unit}"
 
 
 def _arguments(cards: Sequence[Card]) -> Iterator[str]:
-    """Ranges within which the models were trained; predictions elsewhere are invalid."""
-    yield from ("", "## Ranges", "", "Predictions outside of these ranges are invalid.", "")
+    """Ranges within which the models were trained; the runtime predicts elsewhere, too."""
+    yield from ("", "## Ranges", "", "The models were trained and tested within these ranges, and nowhere else.", "")
     yield from ("| model | arguments |", "|---|---|")
     for card in cards:
         ranges = ", ".join(f"{a['name']} {a['lower']:g}..{a['upper']:g} {a['unit']}" for a in card["arguments"])

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from tailor.models.cards.card import Card
+from tailor.models.cards.json_shape import are_rows
 
 TITLE = ("robot", "action", "kind")
 FIGURES = ("test", "episodes", "learner")
 LAST = ("golden", "command", "versions", "sha256", "format", "provenance")
 COUNTS = ("count", "finished", "on_policy", "calibrates")  # of the episodes; all else is their provenance
 MAX_LEVELS = 10  # what is nested deeper is left out
+
+
+def missed_failures(test: Mapping[str, Any]) -> str:
+    """Percent of the test episodes that failed unforeseen, and of those that failed: of none nothing is known."""
+    shares: Any = test.get("confusion_pct")  # older cards lack it
+    if not are_rows([shares], 4):
+        return f"{test['missed_failures_pct']:.1f} %"
+    failed = shares[0] + shares[2]
+    return f"{test['missed_failures_pct']:.1f} % of {failed:.1f} %" if failed > 0 else "none failed in the test"
 
 
 def card_lines(card: Card) -> Iterator[tuple[str, str]]:

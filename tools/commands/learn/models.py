@@ -20,7 +20,7 @@ from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
-from tailor.tools.learning.card_lines import card_lines
+from tailor.tools.learning.card_lines import card_lines, missed_failures
 
 EPILOG = """\
 examples:
@@ -155,7 +155,7 @@ def _all(zoo: Path) -> list[str]:
 def _quality(card: Card) -> str:
     test, kind = card["test"], card["kind"]
     if kind in SUCCESS_KINDS:
-        return f"{test['accuracy_pct']:.1f} % correct, {test['missed_failures_pct']:.1f} % missed"
+        return f"{test['accuracy_pct']:.1f} % correct; missed: {missed_failures(test)}"
     (error, mean), unit = TEST_FIGURES[kind], UNITS[kind]
     return f"MAE {test[error]:.3f} {unit} of {test[mean]:.1f} {unit}"
 

@@ -15,6 +15,7 @@ from tailor.models.cards.card_shape import TEST_FIGURES
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
+from tailor.tools.learning.card_lines import missed_failures
 from tailor.tools.learning.recipe import MAX_SEED
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import (
@@ -121,7 +122,7 @@ def _table(rows: list[dict[str, Any]]) -> Table:
 def _results(row: dict[str, Any]) -> tuple[str, str, str, str]:
     """Mean, error, accuracy and missed failures; empty where the kind of model has none."""
     if row["kind"] in SUCCESS_KINDS:
-        return "", "", f"{row['accuracy_pct']:.1f} %", f"{row['missed_failures_pct']:.1f} %"
+        return "", "", f"{row['accuracy_pct']:.1f} %", missed_failures(row)
     (error, mean), unit = TEST_FIGURES[row["kind"]], UNITS[row["kind"]]
     low, high = row["mae_ci95"]
     return f"{row[mean]:.2f} {unit}", f"{row[error]:.3f} {unit} ({low:.3f} .. {high:.3f})", "", ""
