@@ -52,7 +52,7 @@ def rules(model: Model, file: Path, tree: int | None, data: Path | None) -> str:
         what = "its only tree" if boxes and len(boxes.first) == 1 else f"its tree {tree}"
     off = np.abs(predictions - whole)
     mean = f"{np.nanmean(off):.3f} {unit}" if unit else f"{100 * np.nanmean(off):.1f} %"
-    faithful = f"differ from the model by {mean} on average, R² {_r2(predictions, whole):.3f}, {where}"
+    faithful = f"differ from the model by {mean} on average, {explained(predictions, whole)}, {where}"
     name = "/".join(model.card[key] for key in ("robot", "action", "kind"))
     return "\n\n".join([f"{name}: {len(lines)} rules of {what}, which {faithful}", *lines])
 
@@ -104,8 +104,10 @@ def _predictions(model: Model, arguments: Array) -> Array:
     return model.predict(arguments)[0] if isinstance(model, OnnxDuration) else model.probability(arguments)
 
 
-def _r2(predictions: Array, whole: Array) -> float:
-    """Share of the model's variance that the rules explain; 1 if the model is constant."""
+def explained(predictions: Array, whole: Array) -> str:
+    """Share of the model's variance that the rules explain, in words: of a constant none is there to explain."""
     finite = np.isfinite(predictions) & np.isfinite(whole)
-    variance = float(np.var(whole[finite]))
-    return 1.0 - float(np.mean((predictions[finite] - whole[finite]) ** 2)) / variance if variance > 0 else 1.0
+    if not finite.any() or not np.ptp(whole[finite]):  # the variance of equal values may round to more than 0
+        return "without R², as the model predicts one value"
+    unexplained = float(np.mean((predictions[finite] - whole[finite]) ** 2)) / float(np.var(whole[finite]))
+    return f"R² {1.0 - unexplained:.3f}"
