@@ -12,6 +12,7 @@ from tailor.executive.core.state import Inputs, Output, State, initial_state
 from tailor.executive.core.step import at_once_at_rest, control, deliberate
 from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal, drops_goal
 from tailor.executive.interfaces.outlet import outlets_of
+from tailor.executive.late_goals import LateGoals
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.bus.ros_action.server import GoalAction
@@ -26,8 +27,6 @@ from tailor.schemas.topics import reports
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
 PROVENANCE_TICKS = 10  # once a second, also for a recorder that starts late
-STOOD_NS = 600_000_000  # without a tick; the bus misses a silent process from 0.75 s on, and tells whoever waits for it
-LATE_NS = 1_000_000_000  # after that: until then, goals arrive that were sent before
 
 
 class Shell:
@@ -63,7 +62,7 @@ class Shell:
         external = context.settings.external
         self._planner = ExternalPlanner(external.command, external.limit_s)
         self._state = initial_state(context)
-        self._late_until_ns, self._stood_s = 0, 0.0
+        self._late = LateGoals()
 
     @property
     def state(self) -> State:
@@ -107,8 +106,9 @@ class Shell:
             raise
 
     def _tick(self, period: Period, goal: str, stopping: bool) -> None:
-        samples = (*self._inbox.drain(period.now_ns), *self._planner_answer(period))
-        inputs = Inputs(samples, self._goal(goal, period), period.skipped, stopping)
+        received = self._inbox.drain(period.now_ns)
+        samples = (*received, *self._planner_answer(period))
+        inputs = Inputs(samples, self._goal(goal, period, received), period.skipped, stopping)
         self._state, outputs = control(self._context, self._state, period.now_ns, inputs)
         self._publish(outputs)
         control_ns = self._clock.now_ns() - period.now_ns
@@ -118,13 +118,13 @@ class Shell:
         self._publish(outputs)
         self._report(period, inputs, control_ns, budget.granted)
 
-    def _goal(self, first: str, period: Period) -> str:
+    def _goal(self, first: str, period: Period, received: tuple[Sample, ...]) -> str:
         """The goal that this tick's request sets, else `first`; an invalid goal is refused with its cause.
 
-        So is one that may have waited while this process stood still: people were told that nobody responds. One that
-        only drops the open goal moves nothing, so it counts.
+        So is one that may have waited while this process or the bus stood still: people were told that nobody responds.
+        One that only drops the open goal moves nothing, so it counts.
         """
-        request, may_be_old = self._goals.poll() or self._action.poll(), self._stood_still(period)
+        request, late = self._goals.poll() or self._action.poll(), self._late_goals(period, received)
         if request is None:
             return first
         goal = request.text.strip() or self._context.problem.goal_text
@@ -133,8 +133,8 @@ class Shell:
             request.refuse(str(refusal))
             return first
         if not drops_goal(self._context, goal):
-            if may_be_old:
-                request.refuse(f"the executive stood still for {self._stood_s:.1f} s; send the goal again if it holds")
+            if late:
+                request.refuse(late)
                 return first
             request.accept()
             return goal
@@ -143,13 +143,12 @@ class Shell:
         request.accept(f"cancelled: {dropped}" if dropped else "no goal is open")
         return goal if dropped else ""
 
-    def _stood_still(self, period: Period) -> bool:
-        """Whether this process stood still, just now or a moment ago; called in every tick, after the look at goals."""
+    def _late_goals(self, period: Period, received: tuple[Sample, ...]) -> str:
+        """Why a goal that has just arrived is too old; called in every tick, after the look at goals."""
         now_ns = self._clock.now_ns()
         stood_ns = max(now_ns - period.deadline_ns, period.skipped * PERIOD_NS)
-        if stood_ns >= STOOD_NS:
-            self._late_until_ns, self._stood_s = now_ns + LATE_NS, 1e-9 * stood_ns
-        return now_ns < self._late_until_ns
+        self._late.note(now_ns, stood_ns, max((sample.arrival_ns for sample in received), default=None))
+        return self._late.refusal(now_ns)
 
     def _planner_answer(self, period: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""

@@ -196,3 +196,45 @@ def test_a_client_of_ros_cancels_its_goal_and_one_that_is_open_at_the_end_is_abo
         (GoalState.ABORTED, "replaced", ""),
         (GoalState.ABORTED, "stopped", ""),
     ]
+
+
+class StoppedRouter(Goals):
+    """A bus on which nothing arrives for a while from the eleventh tick on: its router was stopped."""
+
+    def __init__(self, clock, requests, silent_s):
+        super().__init__(clock, requests)
+        self.since_ns = clock.ns + 10**9
+        self.until_ns = self.since_ns + round(silent_s * 1e9)
+
+    def drain(self, now_ns):
+        return () if self.since_ns <= now_ns < self.until_ns else super().drain(now_ns)
+
+
+def answer_behind_router(silent_s, delay_s, goal="(visited a)"):
+    """The answer to a goal that comes `delay_s` after the end of a silence, and whether it counts."""
+    clock = Clock()
+    session = StoppedRouter(clock, {clock.ns + round((1.0 + silent_s + delay_s) * 1e9): goal}, silent_s)
+    state = Shell(line_context(), session, clock, {}).run("", lambda state: bool(session.answers))
+    return session.answers[0], state.task.goal
+
+
+@pytest.mark.promise("P41")
+@pytest.mark.parametrize("silent_s", [0.75, 0.9, 1.4])
+@pytest.mark.parametrize("delay_s", [-0.05, 0.05, 0.8])
+def test_a_goal_that_waited_in_a_stopped_router_is_refused(silent_s, delay_s):
+    (accepted, text), goal = answer_behind_router(silent_s, delay_s)
+    assert (accepted, goal) == (False, "")
+    assert re.fullmatch(r"the bus was silent for [01]\.\d s; send the goal again if it holds", text)
+
+
+@pytest.mark.parametrize(("silent_s", "delay_s"), [(0.4, 0.05), (0.9, 1.5), (60.0, 0.05), (60.0, -20.0)])
+def test_a_goal_counts_after_a_short_silence_and_beside_a_robot_that_is_off(silent_s, delay_s):
+    assert answer_behind_router(silent_s, delay_s) == ((True, "accepted"), "(visited a)")
+
+
+def test_a_goal_before_the_first_message_of_a_robot_counts():
+    clock = Clock()
+    session = StoppedRouter(clock, {clock.ns + 9 * 10**8: "(visited a)"}, 0.0)
+    session.since_ns, session.until_ns = 0, clock.ns + 10**10
+    state = Shell(line_context(), session, clock, {}).run("", lambda state: bool(session.answers))
+    assert (session.answers[0], state.task.goal) == ((True, "accepted"), "(visited a)")

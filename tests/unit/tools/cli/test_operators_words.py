@@ -1,16 +1,18 @@
 """What `tailor arm` and `tailor goal` print when the one whom they mean is not heard."""
 
 import json
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import pytest
 
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
+from tailor.runtime.bus.service import no_service
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import DriverState
 from tailor.simnodes.reasons import ArmRefusal
-from tailor.tools.commands.run import arm
+from tailor.tools.commands.run import arm, goal
 from tailor.tools.main import main
 from tailor.tools.operator import arming_exchange
 from tests.support.bus_system import bus_system
@@ -28,6 +30,15 @@ def test_a_goal_that_nobody_hears_says_what_may_be_wrong(endpoint, capsys):
         "accepted": False,
         "answer": "no service at exec/goal: no executive is running, or it stands still; `tailor status` tells",
     }
+
+
+def test_a_goal_whose_bus_is_lost_says_that_it_may_count(capsys, monkeypatch):
+    session = SimpleNamespace(call_all=lambda key, text: [(False, no_service(key))], connected=False)
+    monkeypatch.setattr(goal, "open_bus", lambda arguments, role: nullcontext(session))
+    assert main(["goal"]) == 2
+    assert capsys.readouterr().err == (
+        "the bus was lost before an answer came: the request may count or not; `tailor status` shows the goal\n"
+    )
 
 
 def test_arming_without_an_executive_says_what_may_be_wrong(endpoint, capsys, monkeypatch):
