@@ -1,4 +1,4 @@
-"""What ends `tailor up --once` besides a result: nothing moves any more before people arm the robot or set a goal."""
+"""What ends `tailor up --once` and `tailor executive --once`: nothing moves any more before people arm or set a goal."""
 
 from __future__ import annotations
 
@@ -8,6 +8,11 @@ from tailor.executive.core.modes import Mode
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import reason_text
 from tailor.tools.launch.processes import LaunchConfig
+
+
+def outcome(mode: str, result: str, cause: str) -> str:
+    """How the pursuit of one goal ended: its result, else the fault, in which a task has none; empty: it has not."""
+    return result or (f"failed: {cause}" if mode == Mode.FAULT else "")
 
 
 class OnceWatch:
@@ -29,9 +34,8 @@ class OnceWatch:
         self._stopped = f"failed: the driver is {driver.mode}: {cause}" if stopped else ""
 
     def hear_executive(self, status: ExecStatus) -> None:
-        """Take a status of the own executive; in a fault its task has no result."""
-        cause = reason_text(status.reason, status.detail)
-        self._fault = f"failed: {cause}" if status.mode == Mode.FAULT else ""  # until people set another goal
+        """Take a status of the own executive."""
+        self._fault = outcome(status.mode, "", reason_text(status.reason, status.detail))  # until people set a goal
 
     def failure(self) -> str:
         """Why the run has failed, or ""."""

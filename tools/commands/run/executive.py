@@ -31,6 +31,7 @@ from tailor.tools.cli.systems.system_flags import configure_system, deployment_f
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.launch.checks.package_check import check_package
+from tailor.tools.launch.once import outcome
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.recordings.recorded_source import source_entry
 
@@ -82,8 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _is_over(state: State) -> bool:
-    """Whether nothing moves any more before people set another goal; in a fault the task has no result."""
-    return bool(state.task.result) or state.fault is not None
+    return bool(outcome(state.mode, state.task.result_text, str(state.cause)))
 
 
 def beginning(context: Context, goal: str) -> str:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Arming, Result, State, Task
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.runtime.processes.notify import SILENT, Notifier
@@ -99,7 +100,7 @@ def test_an_executive_that_runs_once_ends_in_a_fault_as_well_as_with_a_result():
     """In a fault its task has no result: `tailor executive --once` stood for ever."""
     state = State(belief=None, command=(), task=Task(goal="(at a)", active=True))
     assert not executive._is_over(state)
-    assert executive._is_over(replace(state, fault=Cause(Reason.REPEATED_FAILURE, "goToPose")))
+    assert executive._is_over(replace(state, mode=Mode.FAULT, cause=Cause(Reason.REPEATED_FAILURE, "goToPose")))
     assert executive._is_over(replace(state, task=Task(result=Result.FAILED)))
 
 
