@@ -16,11 +16,18 @@ class Stop:
 
     def __init__(self) -> None:
         self.requested = False
+        self._number: int = signal.SIGINT
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of a command whose work was stopped before it was done, as a shell has it: 130 after Ctrl-C."""
+        return 128 + self._number
 
     def request(self, number: int = 0, frame: FrameType | None = None) -> None:
         """Request a stop; also the signal handler, which restores the default action for a second signal."""
         self.requested = True
         if number:
+            self._number = number
             signal.signal(number, signal.SIG_DFL)
 
 

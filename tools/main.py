@@ -84,8 +84,9 @@ def main(argv: Sequence[str] | None = None) -> int:
       argv: Arguments without the program name; default: those of the process.
 
     Returns:
-      Exit code: 0 success, 1 negative result, 2 bad input, 130 interrupted, 143 by SIGTERM; 75 (EX_TEMPFAIL of
-      sysexits.h) if what another process provides is not there and a supervisor, such as systemd, may try again.
+      Exit code, see docs/guide/troubleshooting.md: 0 success, 1 negative result, 2 bad input, 130 interrupted, 143 by
+      SIGTERM; 75 (EX_TEMPFAIL of sysexits.h) if what another process provides is not there and a supervisor, such as
+      systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(["tailor", *arguments[:1]])

@@ -19,7 +19,7 @@ from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 
 RESUME = "--resume"
-STOPPED = 130
+STOPPED = 128  # exit codes above it: a signal ended an evaluation
 EPILOG = """
 `tailor evaluate NAME --help` lists the flags of one evaluation. With `all`, each takes the flags that it has.
 --resume: skip evaluations with a page of this source and these models in the report's folder. Finished episodes are
@@ -88,8 +88,8 @@ def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
         done = _run_one(name, module, settings, everything)
         if settings.report is not None:
             write_overview(settings.report, list(EVALUATIONS))
-        if done == STOPPED:
-            return STOPPED
+        if done > STOPPED:
+            return done
         code = max(code, done)
     return code
 

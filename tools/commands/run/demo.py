@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
         recording.unlink(missing_ok=True)
         _run_once(config, arguments, (name, horizon), recording, stop)
         if stop.requested:
-            return 130
+            return stop.exit_code
         tracks.append(recorded_track(f"{name} (h = {horizon})", recording))
     _write(tracks, folder)
     if arguments.json:

@@ -62,10 +62,12 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"--seed is {arguments.seed}, expected at least 0")
     modes = [mode for mode in MODES if arguments.greedy or mode.name != "greedy"]
     arguments.output.mkdir(parents=True, exist_ok=True)
-    lockstep = arguments.lockstep
-    tracks = _in_lockstep(text, modes, arguments.seed) if lockstep else _live(text, modes, arguments)
-    if len(tracks) < len(modes):
-        return 130
+    if arguments.lockstep:
+        tracks = _in_lockstep(text, modes, arguments.seed)
+    else:
+        tracks = _live(text, modes, arguments, stop := stop_on_signals())
+        if stop.requested:
+            return stop.exit_code
     if nothing := [track for track in tracks if not track.duration_s]:
         print(*(f"{each.title}: no waypoint was reached: {each.result or 'stopped'}" for each in nothing), sep="\n",
               file=sys.stderr)  # fmt: skip
@@ -122,9 +124,11 @@ def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[Wri
     return [write(text, mode, models, seed, body)[0] for mode in modes]
 
 
-def _live(text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace) -> list[WritingTrack]:
-    """Tracks of the modes that ran before an interruption."""
-    stop, tracks = stop_on_signals(), []
+def _live(
+    text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace, stop: Stop
+) -> list[WritingTrack]:
+    """Tracks of the modes that ran before a stop."""
+    tracks = []
     for mode in modes:
         recording = arguments.output / f"{text}-{mode.name}.mcap"
         recording.unlink(missing_ok=True)

@@ -65,7 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Run, compare and publish the report.
 
     Returns:
-      0 if live runs end like those in lock-step and neither test finds a difference, 130 if interrupted, else 1.
+      0 if live runs end like those in lock-step and neither test finds a difference, else 1; 130 after Ctrl-C, 143
+      after SIGTERM.
     """
     task = Task("soccer", arguments.scenario, "", arguments.zoo)
     seeds = seeds_of(task.domain, arguments)
@@ -75,7 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
     stop = stop_on_signals()
     found = {LIVE: _live(task, arguments, starts, stop), REPEATED: repeated}
     if stop.requested:
-        return 130
+        return stop.exit_code
     rows = [_row(name, arguments.horizon, runs, repeats) for name, runs in found.items()]
     plots = {}
     if arguments.report is not None:
