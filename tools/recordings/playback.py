@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from tailor.runtime.bus.publisher import Publisher
+from tailor.runtime.bus.rights.access import may_publish
 from tailor.runtime.bus.session import Session
 from tailor.runtime.recordings.recording import Recorded, Recording
 from tailor.runtime.recordings.selection import Selection
 from tailor.schemas.errors import UsageError
+from tailor.schemas.ros2.profiles import topic_at
 
 
 def _unchanged(recorded: Recorded) -> Recorded:
@@ -31,6 +33,7 @@ class RecordingPart:
     duration_s: float = 0.0  # 0: to the end
     excluded_keys: Selection = ALL_KEYS  # applied to the new keys
     rewrite: Callable[[Recorded], Recorded] = _unchanged
+    left_out: frozenset[str] = frozenset()  # new keys
 
     def messages(self) -> Iterator[Recorded]:
         """Selected messages in file order."""
@@ -39,7 +42,7 @@ class RecordingPart:
         for recorded in self.recording.messages():
             if start_ns <= recorded.log_ns < end_ns and self.wanted.wants(recorded.key, recorded.ros_type):
                 key = self.remap.get(recorded.key, recorded.key)
-                if self.excluded_keys.allows(key):
+                if key not in self.left_out and self.excluded_keys.allows(key):
                     yield self.rewrite(replace(recorded, key=key))
 
     def bounds_ns(self) -> tuple[int, int]:
@@ -66,6 +69,21 @@ class RecordingPart:
             raise UsageError(f"{self.recording.path}: no message of these topics and times, expected at least one")
         return channels
 
+    def playable(self) -> RecordingPart:
+        """The part without what a secured bus takes from no replay; its router would drop that without a word.
+
+        Raises:
+          UsageError: Nothing is left.
+        """
+        keys = {key for key, _ in self.channels()}
+        barred = frozenset(key for key in keys if not _may_play(key))
+        if barred == keys:
+            raise UsageError(
+                f"{self.recording.path}: on a secured bus nobody replays {', '.join(sorted(barred))}, expected other "
+                "topics, or an open bus (`tailor bus --security open`)"
+            )
+        return replace(self, left_out=barred)
+
     def _check_remap(self) -> None:
         """Raise UsageError for a misspelt key: its messages would be published under the recorded one."""
         keys: set[str] = set()
@@ -78,6 +96,11 @@ class RecordingPart:
                 f"--remap {unknown[0]}={self.remap[unknown[0]]}: {self.recording.path} has no such key, expected one "
                 f"of: {', '.join(sorted(keys))}"
             )
+
+
+def _may_play(key: str) -> bool:
+    topic = topic_at(key)
+    return topic is not None and "player" in may_publish(topic)
 
 
 class Publishers:

@@ -77,8 +77,9 @@ def run(arguments: argparse.Namespace) -> int:
         check_within(getattr(arguments, name), maximum, f"--{name}")
     recording, remap = open_recording(arguments.file), remapping(arguments.remap)
     wanted = selection(arguments.topics, arguments.exclude)
-    if arguments.substitute and _is_secured(arguments):
-        raise UsageError(f"--substitute {arguments.substitute}: {SECURED}")
+    secured = _is_secured(arguments)
+    if secured and (arguments.drive or arguments.substitute):
+        raise UsageError(f"{'--drive' if arguments.drive else f'--substitute {arguments.substitute}'}: {SECURED}")
     stop = stop_on_signals()
     with open_bus(arguments, "player") as session:
         codec.prime()
@@ -86,11 +87,15 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.substitute:
             wanted = Selection(wanted.include, wanted.exclude + OMITTED)
             changes = {"rewrite": partial(armed_for, live_executive(session))}
-        elif reason := _why_not_drive(arguments, session):
+        elif reason := _why_not_drive(arguments, secured, session):
             _warn(f"{reason}: commands, arming requests, e-stops and states of drivers are omitted")
             wanted = Selection(wanted.include, wanted.exclude + OF_ROBOTS)
             changes = {"excluded_keys": Selection(exclude=OF_ROBOTS)}
         part = RecordingPart(recording, wanted, remap, arguments.start, arguments.duration, **changes)
+        if secured:
+            part = part.playable()
+            if part.left_out:
+                _warn(f"on a secured bus nobody replays {', '.join(sorted(part.left_out))}; omitted")
         publishers = Publishers(session, part.channels())
         damage = recording.damage.text()  # all of it has been read; the playback may end early
         stats = _play(arguments, session, part, publishers, stop)
@@ -141,9 +146,9 @@ def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
     return key != "quit"
 
 
-def _why_not_drive(arguments: argparse.Namespace, session: Session) -> str:
+def _why_not_drive(arguments: argparse.Namespace, secured: bool, session: Session) -> str:
     """Reason for omitting what drives a robot or passes for its driver; empty: it is published."""
-    if _is_secured(arguments):
+    if secured:
         return SECURED
     if not arguments.drive and _driver_is_live(session):
         return "a driver is live (--drive publishes all)"
