@@ -65,6 +65,11 @@ class Shell:
         self._late = LateGoals()
 
     @property
+    def refused_fields(self) -> str:
+        """Fields for which inputs were refused so far, by key, for people; another thread may read it."""
+        return "; ".join(f"{key} refused: {text}" for key, text in sorted(self._inbox.refused_fields.copy().items()))
+
+    @property
     def state(self) -> State:
         """The state after the newest tick; another thread may read it, but not step it."""
         return self._state

@@ -10,6 +10,7 @@ import struct
 from functools import cache
 from typing import Any
 
+from tailor.schemas.bad_field import not_finite_field
 from tailor.schemas.errors import DecodeRefusal, RefusedValueError, Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.topics import TOPICS, Topic
@@ -67,16 +68,21 @@ def decode(what: Topic | type[Message], data: bytes) -> Message | Rejected:
     if len(data) > limit:
         return Rejected(DecodeRefusal.TOO_LONG.value)
     _, read, name = _codec(kind)
+    value: Any = None
     try:
         value, left = from_bytes(data, name)
         if not 0 <= left <= MAX_TRAILING_BYTES:
             return Rejected(DecodeRefusal.TRAILING_BYTES.value)
         message: Message = read(value)
     except RefusedValueError as error:
-        return Rejected(error.reason.value)
+        return Rejected(error.reason.value, _where(error.reason, value))
     except damage():
         return Rejected(DecodeRefusal.MALFORMED.value)
     return message
+
+
+def _where(reason: DecodeRefusal, value: Any) -> str:
+    return not_finite_field(value) if reason is DecodeRefusal.NOT_FINITE else ""
 
 
 def prime() -> None:

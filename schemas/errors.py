@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 
@@ -22,6 +22,12 @@ class Rejected:
     """A refused input; a value, never an exception. Decoding refuses with the reasons of `DecodeRefusal`."""
 
     reason: str
+    where: str = field(default="", compare=False)  # field of a message, if known; refusals are counted by the reason
+
+    @property
+    def text(self) -> str:
+        """The reason for people, with the field."""
+        return f"{self.reason} ({self.where})" if self.where else self.reason
 
 
 class DecodeRefusal(StrEnum):

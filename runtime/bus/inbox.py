@@ -59,6 +59,7 @@ class Inbox:
         newest_only: bool = False,  # of a state topic, each sender's newest valid sample alone
     ) -> None:
         self.rejected: Counter[tuple[str, str]] = Counter()  # (key, reason) -> count
+        self.refused_fields: dict[str, str] = {}  # key -> what was wrong with which field, of one of the last
         self._subscriptions = [(topic, key, source, encoding_of(topic.type)) for topic, key, source in subscriptions]
         self._now, self._wall, self._newest_only = now, wall, newest_only
         self._previous = Instant(now(), wall())
@@ -77,6 +78,8 @@ class Inbox:
                     continue
                 if isinstance(sample, Rejected):
                     self.rejected[key, sample.reason] += 1
+                    if sample.where:
+                        self.refused_fields[key] = sample.text
                     continue
                 samples.append(sample)
                 if newest_only:  # no invalid sample, and none of a stranger, replaces a valid one

@@ -130,7 +130,7 @@ class HardwareNode:
         self._publishers[name].publish_encoded(payload)
         taken = decode(TOPIC_TABLE[name], payload)
         if isinstance(taken, Rejected):  # by every receiver: to them the sensor is silent
-            self._watch.refused(name, taken.reason)
+            self._watch.refused(name, taken.text)
         else:
             self._watch.heard(name, at_ns)
         return ""

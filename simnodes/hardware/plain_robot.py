@@ -121,7 +121,7 @@ class PlainRobot(Hardware):
                     continue
                 message = decode(kind, raw.payload)
                 if isinstance(message, Rejected):
-                    raise ValueError(f"{name}: {message.reason}")
+                    raise ValueError(f"{name}: {message.text}")
                 found = frame_in(raw.payload)
                 if frame and found != frame:
                     raise ValueError(f"{name}: its frame is '{found}', expected '{frame}' (see [frames])")

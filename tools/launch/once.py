@@ -1,4 +1,4 @@
-"""What ends `tailor up --once` and `tailor executive --once`: nothing moves any more before people arm or set a goal."""
+"""What ends `tailor up --once` besides a result: nothing moves any more before people arm the robot or set a goal."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class SystemModel:
         if received is None:
             self.foreign.unknown(raw.key)
         elif isinstance(received, Rejected):
-            self.foreign.refused(raw.key, received.reason)
+            self.foreign.refused(raw.key, received.reason, received.where)
         elif received.origin.sequence and self._newest.get(raw.key) == _number(received):
             self.foreign.refused(raw.key, "repeated")  # of a frozen sender: it must not look fresh
         elif received.robot and not self._know(received.robot):

@@ -1,6 +1,7 @@
 """A robot with plain topics as Hardware, in this process: what counts as a measurement, and what is a fault."""
 
 import itertools
+import math
 import socket
 import sys
 from contextlib import contextmanager
@@ -113,6 +114,13 @@ def test_a_base_that_others_may_hold_need_not_obey(monkeypatch):
         for stamp_ns in range(1, 12):
             odometry.publish_encoded(codec.encode(replace(ODOMETRY, stamp_ns=stamp_ns, v=0.0, omega=0.0)))
             assert wait_until(robot.read)["odom"].stamp_ns == stamp_ns
+
+
+def test_a_number_that_is_not_finite_is_a_fault_that_names_topic_and_field():
+    with opened("plain") as (odometry, robot):
+        odometry.publish_encoded(codec.encode(replace(ODOMETRY, v=math.nan)))
+        with pytest.raises(ValueError, match=r"^odom: not finite \(twist\.twist\.linear\.x\)$"):
+            wait_until(robot.read)
 
 
 @pytest.mark.promise("P63")

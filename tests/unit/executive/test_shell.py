@@ -94,6 +94,15 @@ def test_what_raises_again_while_the_robot_is_brought_to_rest_hides_nothing():
         shell.run(context.problem.goal_text, lambda state: False)
 
 
+def test_refused_fields_of_inputs_are_named_by_key():
+    session = Session()
+    session.refused_fields = {}
+    shell = Shell(line_context(), session, Clock(), {})
+    assert shell.refused_fields == ""
+    session.refused_fields |= {"b/pose": "not finite (x)", "a/odom": "not finite (y)"}
+    assert shell.refused_fields == "a/odom refused: not finite (y); b/pose refused: not finite (x)"
+
+
 class Goals(Session):
     """A bus on which requests for goals wait; keeps the answers."""
 

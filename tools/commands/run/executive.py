@@ -76,7 +76,8 @@ def run(arguments: argparse.Namespace) -> int:
         if print_states:
             print(beginning(context, goal), flush=True)
         printed = state_lines(lambda: state_line(shell.state, context.domain.robot), print_states)
-        with blamed_on_running_package(spec_of(arguments.domain)), printed:
+        refused = state_lines(lambda: shell.refused_fields)  # also beneath a launcher: the status does not tell it
+        with blamed_on_running_package(spec_of(arguments.domain)), printed, refused:
             state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and _is_over(state)))
     end.check()
     return 1 if arguments.once and state.task.result != "achieved" else 0

@@ -124,9 +124,7 @@ def _in_lockstep(text: str, modes: Sequence[WritingMode], seed: int) -> list[Wri
     return [write(text, mode, models, seed, body)[0] for mode in modes]
 
 
-def _live(
-    text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace, stop: Stop
-) -> list[WritingTrack]:
+def _live(text: str, modes: Sequence[WritingMode], arguments: argparse.Namespace, stop: Stop) -> list[WritingTrack]:
     """Tracks of the modes that ran before a stop."""
     tracks = []
     for mode in modes:

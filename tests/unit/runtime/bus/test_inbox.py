@@ -1,5 +1,8 @@
 """Inbox, attachment and arrival times without a bus."""
 
+import math
+from dataclasses import replace
+
 import pytest
 
 from tailor.runtime.bus import inbox as module
@@ -72,6 +75,13 @@ def test_rejected_samples_are_counted_by_reason(changes, reason):
     box = inbox(raw(ODOMETRY, **changes), raw(ODOMETRY))
     assert len(box.drain(9)) == 1
     assert box.rejected == {("agilo/odom", reason): 1}
+
+
+def test_the_field_of_a_number_that_is_not_finite_is_kept_by_key():
+    received = inbox(raw(replace(ODOMETRY, x=math.nan)), raw(replace(ODOMETRY, v=math.inf)), raw(ODOMETRY))
+    received.drain()
+    assert received.refused_fields == {"agilo/odom": "not finite (twist.twist.linear.x)"}
+    assert received.rejected["agilo/odom", "not finite"] == 2
 
 
 def test_an_unsigned_publication_of_another_ros_node_is_accepted():

@@ -23,7 +23,7 @@ def handlers() -> Iterator[None]:
 
 @pytest.mark.parametrize(("command", "module"), [("demo", demo), ("letters", letters)])
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=lambda each: str(each)
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=str
 )
 def test_the_exit_code_names_the_signal_as_a_shell_does(monkeypatch, tmp_path, command, module, number, code):
     """SIGTERM ended these with 130, as Ctrl-C, and all others with 143."""

@@ -8,7 +8,7 @@ import pytest
 from tailor.schemas import messages as m
 from tailor.schemas.messages.soccer import BallPercept
 from tailor.schemas.topics import key_of
-from tailor.tools.status.foreign import MAX_KEYS
+from tailor.tools.status.foreign import MAX_KEYS, MAX_REASONS, ForeignCounts
 from tailor.tools.status.picture import Finding
 from tailor.tools.status.system_model import MAX_ROBOTS
 from tests.unit.tools.status.bus_feed import DRIVER, EXECUTIVE, OTHER, Feed, driver, problems, raw_of, status, tick
@@ -191,11 +191,19 @@ def test_damaged_messages_are_refused_and_counted_by_key_and_reason():
     picture = feed.run(2.0)
     assert picture.foreign.refused == {
         "agilo/odom": {
-            "malformed": 1, "too long": 1, "bad attachment": 1, "not a put": 1, "other type": 1, "not finite": 1,
-            "repeated": 1,
+            "malformed": 1, "too long": 1, "bad attachment": 1, "not a put": 1, "other type": 1,
+            "not finite (pose.pose.position.x)": 1, "repeated": 1,
         }
     }  # fmt: skip
     assert problems(picture) == ["messages refused"]
+
+
+def test_a_stranger_who_damages_field_after_field_grows_no_observer():
+    counts = ForeignCounts()
+    for number in range(1000):
+        counts.refused("agilo/odom", "not finite", f"field_{number}")
+    refused = counts.view().refused["agilo/odom"]
+    assert (len(refused), refused["not finite"]) == (MAX_REASONS + 1, 1000 - MAX_REASONS)
 
 
 def test_a_frozen_sender_that_repeats_itself_is_not_fresh():
