@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, suppre
 
 from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.rights import access
-from tailor.runtime.bus.rights.credentials import Identity, Password
+from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
@@ -108,7 +108,7 @@ def open_client(
         config = zenoh_config.client([connect], timeout_ms, identity=identity)
 
     def explain(_: str) -> UsageError:  # a password that this user may read is that of the run
-        return _no_response(connect, timeout_s) if local else _no_session(connect)
+        return _no_response(connect, timeout_s) if local else _no_session(connect, identity)
 
     with _opened(config, explain, sender, keys, role) as session:
         yield session
@@ -154,11 +154,23 @@ def _no_response(endpoint: str, timeout_s: float) -> UsageError:
     )
 
 
-def _no_session(endpoint: str) -> UsageError:
+def _no_session(endpoint: str, identity: Identity | None) -> UsageError:
     host, _, port = endpoint.partition("/")[2].rpartition(":")
     try:
         socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
     except OSError:
         return UnreachableError(f"bus endpoint {endpoint}: no router responds; start one with `tailor bus`")
+    if identity is not None and (fault := _fault_of_key(identity)):
+        return UnfitKeyError(fault)
     why = "the bus belongs to another user, or this one has no key for it (`tailor keys`)"
     return UsageError(f"bus endpoint {endpoint}: it opens no session here: {why}")
+
+
+def _fault_of_key(identity: Identity) -> str:
+    from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
+
+    try:
+        check_files(identity)
+    except UsageError as error:
+        return str(error)
+    return out_of_date(identity)

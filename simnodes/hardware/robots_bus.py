@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
 from tailor.runtime.bus.opening import open_client
-from tailor.runtime.bus.rights.credentials import identity_in
+from tailor.runtime.bus.rights.credentials import UnfitKeyError, identity_in
 from tailor.runtime.bus.session import Session
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.simnodes.hardware.plain_settings import RobotBus
@@ -35,5 +35,6 @@ def robots_session(bus: RobotBus, endpoint: str) -> Iterator[Session]:
             if not bus.connect:
                 raise
             why = ABSENT if isinstance(error, UnreachableError) else REFUSED
+            why = f"opens no session, since {error}" if isinstance(error, UnfitKeyError) else why
             raise ConnectionError(f"{bus.connect}: {why}") from error
         yield session

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 from tailor.runtime.bus.opening import open_local_router
 from tailor.runtime.bus.rights.credentials import identity_in
+from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.runtime.processes.child import tailor
@@ -30,6 +31,8 @@ def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator
         machines are missing.
     """
     _check(settings)
+    if settings.remote and (fault := out_of_date(identity_in(f"{settings.keys}/{ROUTER}"))):
+        report(f"{fault}: no other machine opens a session")
     if settings.security == "open":
         report(f"the bus is open: whoever reaches {settings.endpoint} drives the robot")
     secured, keys = settings.security != "open", settings.key_profile
@@ -70,7 +73,7 @@ def _check(settings: BusSettings) -> None:
     if settings.remote and settings.security == "open":
         raise UsageError(f"bus endpoint {settings.remote}: expected a secured bus for other machines, not an open one")
     if settings.remote:
-        identity_in(f"{settings.keys}/{ROUTER}")
+        check_files(identity_in(f"{settings.keys}/{ROUTER}"))
         registered_roles(settings.keys)
 
 

@@ -12,6 +12,10 @@ from tailor.schemas.errors import UsageError
 AUTHORITY, CERTIFICATE, PRIVATE_KEY = "authority.pem", "certificate.pem", "key.pem"
 
 
+class UnfitKeyError(UsageError):
+    """A key with which no session opens, whatever the bus allows."""
+
+
 @dataclass(frozen=True, slots=True)
 class Password:
     """A role and its password in one run."""

@@ -9,6 +9,7 @@ import time
 
 from tailor.runtime.bus.opening import open_gateway
 from tailor.runtime.bus.rights.credentials import identity_in
+from tailor.runtime.bus.rights.key_faults import check_files
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.processes.notify import Notifier
@@ -44,6 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not folder.running():
         raise UnreachableError(f"bus endpoint {endpoint}: no router runs on this machine; start one with `tailor bus`")
     identity = identity_in(f"{arguments.keys}/{ROUTER}") if arguments.keys else None
+    if identity is not None:
+        check_files(identity)
     roles = registered_roles(arguments.keys) if arguments.keys else None
     stop = stop_on_signals()
     set_for_host()
