@@ -6,6 +6,8 @@ A second signal of the same kind ends the process at once.
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -38,3 +40,14 @@ def stop_on_signals() -> Stop:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, stop.request)
     return stop
+
+
+@contextmanager
+def stoppable() -> Iterator[Stop]:
+    """As `stop_on_signals`, for the length of a block that has to undo something before the process ends."""
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    try:
+        yield stop_on_signals()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -11,6 +11,7 @@ import pytest
 
 from tailor.runtime.bus.opening import open_client
 from tailor.runtime.processes.child import Child, tailor
+from tailor.runtime.stopping import SIGNALS
 from tailor.schemas.messages import ArmRequest, DriverState
 from tailor.simnodes.driver import Driver
 from tailor.simnodes.driver_spec import DriverSpec
@@ -119,7 +120,7 @@ class StandingDriver:
 
 
 @pytest.mark.promise("P52")
-@pytest.mark.parametrize("interrupted", [False, True])
+@pytest.mark.parametrize("interrupted", [None, *SIGNALS])
 def test_a_request_to_arm_that_nobody_confirmed_arms_nothing_later(interrupted):
     with bus_system() as (session, endpoint, _):
         standing = StandingDriver(session)
@@ -128,7 +129,7 @@ def test_a_request_to_arm_that_nobody_confirmed_arms_nothing_later(interrupted):
         try:
             wait_until(lambda: standing.stand(0.2) or standing.waiting, "request")
             if interrupted:
-                people.send_signal(signal.SIGINT)
+                people.send_signal(interrupted)
             wait_until(lambda: standing.stand(0.2) or people.poll() is not None, "end of the command")
             standing.stand(0.5)
         finally:
@@ -136,7 +137,7 @@ def test_a_request_to_arm_that_nobody_confirmed_arms_nothing_later(interrupted):
             printed = people.communicate()[0]
         modes = list(standing.modes())
         assert (modes[0], modes[-1]) == ("armed", "disarmed"), "it is taken back, and would have armed"
-        assert people.returncode != 0
+        assert people.returncode == (1 if interrupted is None else 128 + interrupted)
         assert (
             interrupted or printed == "sent, but not confirmed, so it was taken back; agilo is disarmed: just started\n"
         )

@@ -14,6 +14,7 @@ import time
 
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
+from tailor.runtime.stopping import Stop, stoppable
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
@@ -52,7 +53,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if the driver's state confirms the request, 1 if not, 2 if it is not clear which executive is meant."""
+    """0 if the driver's state confirms the request, 1 if not, 2 if it is not clear which executive is meant.
+
+    A signal that ends it before takes a request to arm back first.
+    """
     robot: str = arguments.robot
     if not re.fullmatch(r"[\w-]+(/[\w-]+)*", robot, re.ASCII):
         raise UsageError(f"robot {robot!r}: expected a name, e.g. agilo")
@@ -65,7 +69,10 @@ def run(arguments: argparse.Namespace) -> int:
             _print(arguments, robot, "no executive", NO_EXECUTIVE, None)
             return 1
         request = ArmRequest(not arguments.off, arguments.reset, sender, 0)
-        outcome, exchange = _exchange(session, robot, request)
+        with stoppable() as stop:
+            outcome, exchange = _exchange(session, robot, request, stop)
+        if outcome is None:
+            return stop.exit_code
         others = "" if exchange.state is not None else _others(session)
     state = _text(robot, exchange.state) + others
     withdrawn = "" if arguments.off else ", so it was taken back"
@@ -105,12 +112,12 @@ def _executive_sender(session: Session) -> str:
     return next(iter(scenarios), "")
 
 
-def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcome, Exchange]:
-    """Repeat a request until its outcome is known; one to arm without any, also by Ctrl-C, is taken back."""
+def _exchange(session: Session, robot: str, request: ArmRequest, stop: Stop) -> tuple[Outcome | None, Exchange]:
+    """Repeat a request until its outcome is known, or a stop is requested; one to arm without any is taken back."""
     publisher, exchange = session.publisher("arm_request", robot), Exchange(request, time.monotonic())
     outcome: Outcome | None = None
     try:
-        outcome = _outcome(session, robot, publisher, exchange)
+        outcome = _outcome(session, robot, publisher, exchange, stop)
     finally:
         withdrawal = exchange.withdrawal()
         if outcome in (None, Outcome.NO_CONFIRMATION) and withdrawal is not None:
@@ -118,9 +125,9 @@ def _exchange(session: Session, robot: str, request: ArmRequest) -> tuple[Outcom
     return outcome, exchange
 
 
-def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Exchange) -> Outcome:
+def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Exchange, stop: Stop) -> Outcome | None:
     inbox = session.inbox(["driver", "estop"], robot, newest_only=False)  # a change in between must be seen
-    while (outcome := exchange.outcome(time.monotonic())) is None:
+    while (outcome := exchange.outcome(time.monotonic())) is None and not stop.requested:
         for sample in inbox.drain():
             if isinstance(sample.message, DriverState):
                 exchange.hear(sample.message, sample.arrival_ns / 1e9)
