@@ -79,6 +79,12 @@ def open_bus(arguments: argparse.Namespace, role: Role, sender: str = "") -> Abs
     return open_client(settings.endpoint, sender=sender, role=role, identity=identity, keys=settings.key_profile)
 
 
+def key_advice(arguments: argparse.Namespace, does: str) -> str:
+    """What else may be wrong where nobody has answered: another role is not told that it was not heard; or empty."""
+    key = bus_settings(arguments).key
+    return f"{key}: a key {does} only if its role is people (tailor keys list)" if key else ""
+
+
 def configure_sender(parser: argparse.ArgumentParser) -> None:
     """The flag --sender: a launcher gives each of its children an id, by which it knows their messages."""
     parser.add_argument("--sender", metavar="HEX", default="", help="sender id, 32 hex digits (default: random)")

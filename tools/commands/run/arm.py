@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import sys
 import time
 
 from tailor.runtime.bus.publisher import Publisher
@@ -20,7 +21,7 @@ from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.reasons import ArmRefusal, Mode
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, open_bus
+from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, key_advice, open_bus
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 from tailor.tools.operator.stop_button import HEAR_S, driver_states
@@ -79,6 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
     advice = _advice(robot, exchange.refusal)
     text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn, advice=advice)
     _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.state)
+    if outcome in (Outcome.NO_CONFIRMATION, Outcome.NOT_SENT) and (hint := key_advice(arguments, "arms drivers")):
+        print(hint, file=sys.stderr)
     return 0 if outcome is Outcome.CONFIRMED else 1
 
 

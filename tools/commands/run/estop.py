@@ -13,7 +13,7 @@ import sys
 from collections.abc import Mapping
 
 from tailor.schemas.messages import DriverState
-from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
+from tailor.tools.cli.systems.endpoint import configure_bus, key_advice, open_bus
 from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 
@@ -46,9 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     print(_json(states, stopped) if arguments.json else summary(states, arguments.expect))
     if stopped:
         return 0
-    key = bus_settings(arguments).key
-    if key:  # another role is not told that nobody heard it
-        print(f"{key}: a key stops drivers only if its role is people (tailor keys list)", file=sys.stderr)
+    if advice := key_advice(arguments, "stops drivers"):
+        print(advice, file=sys.stderr)
     return 1
 
 

@@ -19,7 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.number_checks import finite
 from tailor.tools.cli.plain_text import note, plain
-from tailor.tools.cli.systems.endpoint import configure_bus, open_bus
+from tailor.tools.cli.systems.endpoint import configure_bus, key_advice, open_bus
 from tailor.tools.operator.goal_follower import PURSUED, GoalFollower
 
 NOTHING = "(and)"  # without conditions: drops the open goal
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
         answers = [(accepted, nobody if answer == no_service(KEY) else answer) for accepted, answer in answers]
         if follower is not None and [accepted for accepted, _ in answers] == [True]:
             return _followed(follower, arguments, answers[0][1])
-    if any(answer == NOBODY for _, answer in answers) and (advice := ""):
+    if any(answer == NOBODY for _, answer in answers) and (advice := key_advice(arguments, "sends goals")):
         print(advice, file=sys.stderr)
     everyone = _print_answers(answers, arguments.json)
     return 0 if everyone and follower is None else 1 if everyone else 2

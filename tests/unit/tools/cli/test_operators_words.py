@@ -32,6 +32,14 @@ def test_a_goal_that_nobody_hears_says_what_may_be_wrong(endpoint, capsys):
     }
 
 
+def test_a_goal_of_a_key_that_nobody_hears_names_the_role_that_it_needs(capsys, monkeypatch):
+    """A bus tells no other role that it may not ask, and the executive that runs is not found."""
+    session = SimpleNamespace(call_all=lambda key, text: [(False, no_service(key))], connected=True)
+    monkeypatch.setattr(goal, "open_bus", lambda arguments, role: nullcontext(session))
+    assert main(["goal", "--key", "viewer"]) == 2
+    assert "viewer: a key sends goals only if its role is people (tailor keys list)\n" in capsys.readouterr().err
+
+
 def test_a_goal_whose_bus_is_lost_says_that_it_may_count(capsys, monkeypatch):
     session = SimpleNamespace(call_all=lambda key, text: [(False, no_service(key))], connected=False)
     monkeypatch.setattr(goal, "open_bus", lambda arguments, role: nullcontext(session))
