@@ -82,7 +82,7 @@ class Supervisor:
         gives_up = process.spec.must_begin and not process.has_begun
         if not process.spec.restarts or code in FINAL_CODES or gives_up:
             process.over = True
-            if code != 0:
+            if code != 0 or process.spec.restarts:  # one that is to run on has been ended from outside, e.g. by `kill`
                 self._report(f"{process.spec.name} ended with {code}; not started again")
         else:
             self._start_later(process, f"ended with {code}", now_ns)

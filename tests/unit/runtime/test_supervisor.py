@@ -225,6 +225,17 @@ def test_a_child_that_ended_for_good_is_reported(supervisor):
     assert supervisor.reported == ["record ended with -9; not started again"]
 
 
+@pytest.mark.parametrize(("restarts", "reported"), [(True, ["gateway ended with 0; not started again"]), (False, [])])
+def test_a_child_that_was_to_run_on_and_ended_in_order_is_reported(supervisor, restarts, reported):
+    """A gateway that somebody had sent SIGTERM was missed by those alone whom it let in, e.g. to a remote e-stop."""
+    supervisor.start(ProcessSpec("gateway", ["x"], restarts=restarts), 0)
+    FakeChild.made[0].code = 0
+    supervisor.poll(S)
+    supervisor.poll(9 * S)
+    assert supervisor.reported == reported
+    assert supervisor.state("gateway") is State.ENDED
+
+
 @pytest.mark.promise("P2")
 def test_a_child_without_any_sign_of_life_is_killed_at_the_start_up_deadline(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)

@@ -51,7 +51,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Compose and check the configuration, then tick until stopped, or until another run of the bus has begun."""
-    end, notifier = BusEnd(arguments, stop_on_signals()), Notifier.from_environment()
+    stop, notifier = stop_on_signals(), Notifier.from_environment()
+    end = BusEnd(arguments, stop)
     set_for_loop()
     deployment = deployment_from(arguments)
     check_package(arguments.domain)
@@ -80,6 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
         with blamed_on_running_package(spec_of(arguments.domain)), printed, refused:
             state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and _is_over(state)))
     end.check()
+    if arguments.once and stop.requested and not _is_over(state):
+        return stop.exit_code
     return 1 if arguments.once and state.task.result != "achieved" else 0
 
 

@@ -48,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run until Ctrl-C (0), or with --once until the goal is achieved (0) or has failed (1).
 
-    A system that ends by itself is a failure as well (1).
+    A system that ends by itself is a failure as well (1). With --once, a signal before that has its own exit code.
     """
     stop = stop_on_signals()
     set_for_host()
@@ -78,6 +78,8 @@ def run(arguments: argparse.Namespace) -> int:
     with screen() as shown:
         result = run_system(config, shown, stop)
     print(result or "stopped")
+    if arguments.once and not result:
+        return stop.exit_code
     done = result == "achieved" if arguments.once else stop.requested
     return 0 if done else 1
 

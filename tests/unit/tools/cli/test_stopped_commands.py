@@ -9,7 +9,7 @@ import pytest
 
 from tailor.runtime.stopping import SIGNALS
 from tailor.tools.commands.measure import evaluate
-from tailor.tools.commands.run import demo, letters
+from tailor.tools.commands.run import demo, letters, up
 from tailor.tools.main import main
 
 
@@ -21,12 +21,20 @@ def handlers() -> Iterator[None]:
         signal.signal(number, handler)
 
 
-@pytest.mark.parametrize(("command", "module"), [("demo", demo), ("letters", letters)])
+@pytest.mark.parametrize(
+    ("words", "module"),
+    [
+        (("demo", "--json", "--output", "out"), demo),
+        (("letters", "--json", "--output", "out"), letters),
+        (("up", "soccer", "--once"), up),
+    ],
+    ids=["demo", "letters", "up"],
+)
 @pytest.mark.parametrize(
     ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=str
 )
-def test_the_exit_code_names_the_signal_as_a_shell_does(monkeypatch, tmp_path, command, module, number, code):
-    """SIGTERM ended these with 130, as Ctrl-C, and all others with 143."""
+def test_the_exit_code_names_the_signal_as_a_shell_does(monkeypatch, tmp_path, words, module, number, code):
+    """SIGTERM ended these with 130, as Ctrl-C, or with 1, as a goal that has failed, and all others with 143."""
     runs = []
 
     def stopped(config, shown, stop):
@@ -35,7 +43,8 @@ def test_the_exit_code_names_the_signal_as_a_shell_does(monkeypatch, tmp_path, c
         return ""
 
     monkeypatch.setattr(module, "run_system", stopped)
-    assert main([command, "--json", "--output", str(tmp_path)]) == code
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == code
     assert len(runs) == 1, "the next run does not start"
 
 
