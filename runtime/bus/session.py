@@ -36,6 +36,7 @@ from tailor.schemas.services import MAX_REQUEST_BYTES, SERVICES
 from tailor.schemas.topics import TOPICS, Priority, Topic, key_of
 
 MAX_KEY_BYTES = 1000  # of a key; a zenoh message carries up to 65 535
+MAX_ENCODING_BYTES = 255  # zenoh panics at a longer one, in the midst of a put
 _PRIORITIES = {
     "real_time": zenoh.Priority.REAL_TIME,
     "interactive_high": zenoh.Priority.INTERACTIVE_HIGH,
@@ -116,11 +117,13 @@ class Session:
         A topic of the table is published under the keys of this session's profile.
 
         Raises:
-          UsageError: The key is invalid, or a pattern.
+          UsageError: The key is invalid, or a pattern, or the name of the type too long.
         """
         if not _is_one_key(key):
             raise UsageError(f"key '{key[:100]}': expected one that the bus can carry, such as agilo/odom")
         topic, encoding = topic_at(key), encoding_named(ros_type) if ros_type else None
+        if encoding is not None and len(encoding.encode(errors="replace")) > MAX_ENCODING_BYTES:
+            raise UsageError(f"key '{key}': type '{ros_type[:100]}…', expected a name that the bus can carry")
         known = topic is not None and encoding == encoding_of(topic.type)
         keys = self._keys_of(topic, key) if topic is not None and known else [(key, encoding)]
         declared = [

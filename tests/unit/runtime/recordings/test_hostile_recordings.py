@@ -291,6 +291,14 @@ def test_excluded_keys_are_excluded_after_remapping_as_well(tmp_path):
     assert [m.key for m in part.messages()] == ["y"]
 
 
+def test_a_type_whose_name_the_bus_cannot_carry_is_not_played():
+    """zenoh panics in the put, which ended the replay with a traceback of Rust's."""
+    with bus_system() as (session, _, _):
+        session.player("a/b", "a" * 239).publish_encoded(b"")
+        with pytest.raises(UsageError, match=r"type 'a+…', expected a name that the bus can carry"):
+            session.player("a/b", "a" * 240)
+
+
 @pytest.mark.parametrize("key", ["", "/", "a/", "**", "agilo/*", "a#b", "x" * 70_000])
 def test_an_invalid_key_or_pattern_is_not_played(key):
     with bus_system() as (session, _, _), pytest.raises(UsageError, match="expected one that the bus can carry"):
