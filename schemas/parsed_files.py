@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from tailor.schemas.errors import Rejected, UsageError
 
 T = TypeVar("T")
+MAX_FILE_BYTES = 64_000_000  # far above any of them; a device such as /dev/zero has no end
 MAX_ERROR = 90  # characters: a received text may be quoted in it
 
 
@@ -71,7 +72,7 @@ def shown(value: Any) -> str:
 
 def _read(path: Path | str, expected: str, parse: Callable[[str], T]) -> T:
     try:
-        return parse(Path(path).read_text(encoding="utf-8"))
+        return parse(_text(Path(path)))
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected {expected}") from error
     except UnicodeDecodeError as error:
@@ -79,6 +80,14 @@ def _read(path: Path | str, expected: str, parse: Callable[[str], T]) -> T:
         raise UsageError(f"{path}: not UTF-8 ({where}), expected {expected}") from None
     except ValueError as error:
         raise UsageError(f"{path}: {error}, expected {expected}") from None
+
+
+def _text(path: Path) -> str:
+    with path.open("rb") as file:
+        data = file.read(MAX_FILE_BYTES + 1)
+    if len(data) > MAX_FILE_BYTES:
+        raise ValueError(f"has more than {MAX_FILE_BYTES // 10**6} MB")
+    return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _parsed(parse: Callable[[str], T], text: str, language: str) -> T:

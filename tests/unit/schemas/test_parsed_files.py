@@ -42,6 +42,12 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
         read_toml(tmp_path, "a card")
 
 
+def test_a_file_without_end_is_refused() -> None:
+    """It was read until no memory was left."""
+    with pytest.raises(UsageError, match="/dev/zero: has more than 64 MB, expected a deployment file"):
+        read_toml("/dev/zero", "a deployment file")
+
+
 @pytest.mark.parametrize(("read", "text"), [(read_toml, 'name = "Bürste"'), (read_json, '{"name": "Bürste"}')])
 def test_files_are_utf_8_in_every_locale(tmp_path: Path, read: Callable[..., Any], text: str) -> None:
     (tmp_path / "file").write_text(text, encoding="utf-8")
