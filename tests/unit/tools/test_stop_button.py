@@ -4,7 +4,7 @@ import json
 import os
 import sys
 import time
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from types import SimpleNamespace
 
 import pytest
@@ -115,6 +115,34 @@ def test_the_command_is_done_if_those_that_it_expects_have_stopped(monkeypatch, 
     assert json.loads(capsys.readouterr().out) == {"stopped": code == 0, "drivers": {"agilo": "estopped"}}
 
 
+@pytest.mark.parametrize(
+    ("drivers", "shown"), [({}, ""), ({"agilo": lambda count: encode(state())}, "agilo is armed\n")]
+)
+def test_an_estop_whose_bus_is_lost_is_not_told_that_no_driver_is_there(monkeypatch, capsys, drivers, shown):
+    """Behind a router that hung, nobody was heard, nor had heard it: `no driver is on the bus`."""
+    bus = Bus(**drivers)
+    bus.connected = False
+    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext(bus))
+    assert main(["estop"]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == shown
+    assert printed.err.startswith("NOT CONFIRMED: the bus was lost")
+
+
+def test_an_estop_reports_before_its_session_closes(monkeypatch, capsys):
+    """A session whose router hangs took up to ten seconds, in which nobody read NOT CONFIRMED."""
+    read = []
+
+    @contextmanager
+    def closing(*_):
+        yield Bus(agilo=confirms())
+        read.append(capsys.readouterr().out)
+
+    monkeypatch.setattr(estop, "open_bus", closing)
+    assert main(["estop"]) == 0
+    assert read == ["agilo is estopped\n"]
+
+
 def test_a_newer_state_counts_and_junk_does_not():
     queue = IngestQueue()
     states = stop_button.DriverStates(queue)
@@ -184,7 +212,7 @@ def test_what_people_read_of_a_held_switch_is_no_part_of_the_json(monkeypatch, c
         def hold(self, released):
             self.report("agilo is armed: hears this switch")
 
-    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext("a session"))
+    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext(SimpleNamespace(connected=True)))
     monkeypatch.setattr(estop, "StopButton", lambda session: SimpleNamespace(press=lambda **_: {}))
     monkeypatch.setattr(dead_mans_switch, "DeadMansSwitch", Switch)
     monkeypatch.setattr(dead_mans_switch, "stop_on_signals", lambda: SimpleNamespace(requested=True))

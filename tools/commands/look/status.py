@@ -15,7 +15,7 @@ from dataclasses import asdict
 
 from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
-from tailor.schemas.errors import UsageError
+from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.tools.cli.number_checks import finite
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, open_bus
 from tailor.tools.cli.terminal import table_console
@@ -68,6 +68,8 @@ def _once(arguments: argparse.Namespace, seconds: float, stop: Stop) -> Picture:
         model = SystemModel(began_ns)
         picture = _observe(model, Watcher(queue, model, began_ns), seconds, stop)
         subscription.undeclare()
+        if not session.connected and not stop.requested:  # else it would seem that nobody is there
+            raise UnreachableError(f"bus endpoint {bus_settings(arguments).endpoint}: was lost while it was observed")
         return picture
 
 

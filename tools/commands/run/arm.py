@@ -75,6 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
         if outcome is None:
             return stop.exit_code
         others = "" if exchange.state is not None else _others(session)
+        others += "" if session.connected else "; the bus was lost"
     state = _text(robot, exchange.state) + others
     withdrawn = "" if arguments.off else ", so it was taken back"
     advice = _advice(robot, exchange.refusal)

@@ -16,6 +16,8 @@ from tailor.schemas.messages import DriverState
 from tailor.tools.cli.systems.endpoint import configure_bus, key_advice, open_bus
 from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
+LOST = "NOT CONFIRMED: the bus was lost, and nobody knows what heard the e-stop; use the e-stop of the robot itself"
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor estop`."""
@@ -42,10 +44,20 @@ def run(arguments: argparse.Namespace) -> int:
                 hold_in_terminal(session, sys.stderr if arguments.json else sys.stdout)
         finally:  # whatever ended it
             states = button.press(expected=arguments.expect)
+        return _report(arguments, states, session.connected)  # a session whose router hangs takes seconds to close
+
+
+def _report(arguments: argparse.Namespace, states: Mapping[str, DriverState], connected: bool) -> int:
     stopped = all_stopped(states, arguments.expect)
-    print(_json(states, stopped) if arguments.json else summary(states, arguments.expect))
+    lost = not stopped and not connected
+    if arguments.json:
+        print(_json(states, stopped), flush=True)
+    elif states or not lost:
+        print(summary(states, arguments.expect), flush=True)
     if stopped:
         return 0
+    if lost:
+        print(LOST, file=sys.stderr)
     if advice := key_advice(arguments, "stops drivers"):
         print(advice, file=sys.stderr)
     return 1
