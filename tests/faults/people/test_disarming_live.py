@@ -5,6 +5,7 @@ import random
 import signal
 import subprocess
 import time
+from contextlib import contextmanager
 from functools import partial
 
 import pytest
@@ -119,13 +120,25 @@ class StandingDriver:
             yield self.driver.guard.mode
 
 
+@contextmanager
+def heeded_signals():
+    """Children heed them, as those of a terminal: tests that run by `nohup` or in the background ignore some."""
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 @pytest.mark.promise("P52")
 @pytest.mark.parametrize("interrupted", [None, *SIGNALS])
 def test_a_request_to_arm_that_nobody_confirmed_arms_nothing_later(interrupted):
     with bus_system() as (session, endpoint, _):
         standing = StandingDriver(session)
         words = tailor("arm", "agilo", "--sender", "e" * 32, "--connect", endpoint)
-        people = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        with heeded_signals():
+            people = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         try:
             wait_until(lambda: standing.stand(0.2) or standing.waiting, "request")
             if interrupted:

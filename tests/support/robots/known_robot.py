@@ -11,7 +11,7 @@ import pytest
 from tailor.schemas import codec, typesystem
 from tailor.schemas.own import converters
 from tailor.schemas.packages import discovery
-from tailor.schemas.ros2 import profiles, service
+from tailor.schemas.ros2 import action, profiles, service
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.new_robot.names import package_of
 from tailor.tools.new_robot.templates import write_robot
@@ -56,6 +56,7 @@ def _forget() -> None:
         codec._limit,
         converters,
         service.set_goal_hash,
+        action.achieve_goal,
         key_of,
         profiles.topic_at,
         profiles._in_table,
