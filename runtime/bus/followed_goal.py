@@ -1,4 +1,4 @@
-"""A goal that the executive has accepted, followed by its status: for whoever waits for what becomes of it."""
+"""A goal that the executive pursues, followed by its status: for whoever waits for what becomes of it."""
 
 from __future__ import annotations
 
@@ -32,6 +32,6 @@ class FollowedGoal:
 def _result(goal: str, status: ExecStatus) -> GoalResult | None:
     if status.goal != goal:
         return GoalResult("replaced")
-    if status.result or not goal:  # without any, what was sent dropped the open goal, and there was none
-        return GoalResult(status.result or "cancelled", status.result_reason, status.result_detail)
+    if status.result:
+        return GoalResult(status.result, status.result_reason, status.result_detail)
     return GoalResult("fault", status.reason, status.detail) if status.mode == "FAULT" else None

@@ -7,6 +7,8 @@ from typing import Any, Protocol
 
 from tailor.schemas.services import MAX_REQUEST_BYTES
 
+ACCEPTED = "accepted"  # response to a request that is carried out from now on; another one says what was done at once
+
 
 class ServiceRequest:
     """Request of a client; call `accept` or `refuse` exactly once."""
@@ -15,7 +17,7 @@ class ServiceRequest:
         self.text = text
         self._respond = respond
 
-    def accept(self, response: str = "accepted") -> None:
+    def accept(self, response: str = ACCEPTED) -> None:
         """Respond that the request is accepted."""
         self._respond(True, response)
 

@@ -1,4 +1,4 @@
-"""What became of the goals that clients of the action sent: at most one is open, the newest."""
+"""What became of the goals that clients of the action sent: at most one is open."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class ClientGoal:
 
 
 class ClientGoals:
-    """The goals by their clients' ids, the oldest first."""
+    """The goals by their clients' ids; what ended earlier comes earlier."""
 
     def __init__(self) -> None:
         self._goals: dict[bytes, ClientGoal] = {}
@@ -49,11 +49,11 @@ class ClientGoals:
     def accept(self, goal: GoalInfo) -> None:
         """The executive pursues a goal from now on; another one that was open is replaced."""
         self.end(GoalResult("replaced"))
-        self._add(ClientGoal(goal))
+        self._goals[goal.id] = ClientGoal(goal)
 
-    def refuse(self, goal: GoalInfo, cause: str) -> None:
-        """The executive does not take a goal; its client reads the cause in the result."""
-        self._add(ClientGoal(goal, GoalState.ABORTED, GoalResult("refused", detail=cause)))
+    def abort(self, goal: GoalInfo, result: GoalResult) -> None:
+        """The executive does not pursue a goal; its client reads the cause in the result."""
+        self._keep(ClientGoal(goal, GoalState.ABORTED, result))
 
     def to_cancel(self, named: GoalInfo) -> tuple[CancelCode, ClientGoal | None]:
         """The open goal if a request to cancel means it, else why not."""
@@ -61,8 +61,8 @@ class ClientGoals:
         is_old = pursued is not None and pursued.info.stamp_ns <= named.stamp_ns  # all until then are meant
         if pursued is not None and (is_old or named.id == pursued.info.id or named == GoalInfo(ANY_GOAL, 0)):
             return CancelCode.NONE, pursued
-        if named.id == ANY_GOAL:
-            return CancelCode.NONE, None
+        if named.id == ANY_GOAL or named.stamp_ns:
+            return CancelCode.NONE, None  # as rcl_action has it: that none is so old is no error
         known = named.id in self._goals
         return (CancelCode.GOAL_TERMINATED if known else CancelCode.UNKNOWN_GOAL_ID), None
 
@@ -82,9 +82,12 @@ class ClientGoals:
         else:
             goal.state = GoalState.SUCCEEDED if result.result == "achieved" else GoalState.ABORTED
         goal.result = replace(result, duration_s=goal.followed.lasted_s)
+        self._keep(goal)
         return True
 
-    def _add(self, goal: ClientGoal) -> None:
+    def _keep(self, goal: ClientGoal) -> None:
+        """Keep a goal that has ended; those that ended first are forgotten."""
+        self._goals.pop(goal.info.id, None)
         self._goals[goal.info.id] = goal
         ended = [each.info.id for each in self if not each.open]
         for old in ended[: max(len(ended) - KEPT, 0)]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tailor.runtime.bus.ros_action.goals import UNKNOWN, ClientGoals
+from tailor.runtime.bus.ros_action.goals import UNKNOWN, ClientGoal, ClientGoals
 from tailor.runtime.bus.ros_wires import RosCall
-from tailor.runtime.bus.service import ServiceRequest
+from tailor.runtime.bus.service import ACCEPTED, ServiceRequest
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.errors import Rejected
@@ -23,7 +23,7 @@ class GoalAction:
     def __init__(self, session: Session) -> None:
         """Declare its services and topics, if the session is part of ROS 2's graph."""
         self._goals = ClientGoals()
-        self._waiting: list[tuple[bytes, RosCall]] = []  # ids of open goals, and who waits for their result
+        self._waiting: list[tuple[ClientGoal, RosCall]] = []  # open goals, and who waits for their result
         self._declared = session.keys.announces
         if self._declared:
             messages.prime()
@@ -37,8 +37,7 @@ class GoalAction:
         """Next request to pursue or to drop a goal; requests for results are answered, or wait."""
         if not self._declared:
             return None
-        for _ in range(MAX_WAITING):
-            self._results.receive()
+        self._receive_results()
         return self._cancels.receive() or self._sent.receive()
 
     def report(self, status: ExecStatus) -> None:
@@ -52,8 +51,11 @@ class GoalAction:
 
     def close(self) -> None:
         """The executive ends: whoever waits for a result gets one."""
+        if not self._declared:
+            return
         if self._goals.end(GoalResult("stopped")):
             self._tell()
+        self._receive_results()  # that came since the last tick
 
     def _send(self, call: RosCall) -> ServiceRequest | None:
         sent = messages.sent_goal(call.data)
@@ -64,10 +66,12 @@ class GoalAction:
 
         def respond(accepted: bool, text: str) -> None:
             # ROS 2 has no reason for a rejected goal: one that is refused is accepted, and aborted with the cause.
-            if accepted:
+            if not accepted:
+                self._goals.abort(goal, GoalResult("refused", detail=text))
+            elif text == ACCEPTED:
                 self._goals.accept(goal)
-            else:
-                self._goals.refuse(goal, text)
+            else:  # it had no condition: nothing is pursued, and the status is still that of the goal before
+                self._goals.abort(goal, GoalResult("cancelled", detail=text))
             call.respond(messages.sent_response(True, goal.stamp_ns))
             self._tell()
 
@@ -93,23 +97,33 @@ class GoalAction:
 
         return ServiceRequest(DROP, respond)
 
+    def _receive_results(self) -> None:
+        for _ in range(MAX_WAITING):
+            self._results.receive()
+
     def _result(self, call: RosCall) -> None:
         wanted = messages.asked_result(call.data)
         goal = None if isinstance(wanted, Rejected) else self._goals.get(wanted)
         if goal is None:
             call.respond(messages.result_response(GoalState.UNKNOWN, UNKNOWN))
-        elif goal.open and len(self._waiting) < MAX_WAITING:
-            self._waiting.append((goal.info.id, call))
+        elif goal.open:
+            self._wait(goal, call)
         else:
             call.respond(messages.result_response(goal.state, goal.result))
+
+    def _wait(self, goal: ClientGoal, call: RosCall) -> None:
+        """Let a call wait for the end of a goal; of too many the oldest does no longer: its client may be dead."""
+        self._waiting.append((goal, call))
+        if len(self._waiting) > MAX_WAITING:
+            old, oldest = self._waiting.pop(0)
+            oldest.respond(messages.result_response(old.state, old.result))
 
     def _tell(self) -> None:
         """Publish the states of the goals, and answer who waits for the result of one that has ended."""
         self._states.publish_encoded(messages.states_message((goal.info, goal.state) for goal in self._goals))
         waiting, self._waiting = self._waiting, []
-        for wanted, call in waiting:
-            goal = self._goals.get(wanted)
-            if goal is not None and goal.open:
-                self._waiting.append((wanted, call))
-            elif goal is not None:
+        for goal, call in waiting:
+            if goal.open:
+                self._waiting.append((goal, call))
+            else:
                 call.respond(messages.result_response(goal.state, goal.result))

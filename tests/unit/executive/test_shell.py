@@ -207,6 +207,12 @@ def test_a_client_of_ros_cancels_its_goal_and_one_that_is_open_at_the_end_is_abo
     ]
 
 
+def test_a_goal_of_ros_without_conditions_drops_the_open_one_and_ends():
+    dropped = (GoalState.ABORTED, "cancelled")
+    assert results_of({3: "(visited a)", 9: "(and)"}) == [(*dropped, ""), (*dropped, "cancelled: (visited a)")]
+    assert results_of({3: "(at home)", 9: "(and)"})[1] == (*dropped, "no goal is open")
+
+
 class StoppedRouter(Goals):
     """A bus on which nothing arrives for a while from the eleventh tick on: its router was stopped."""
 

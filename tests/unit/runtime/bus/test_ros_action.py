@@ -136,6 +136,7 @@ def test_goals_until_a_time_are_cancelled(client, action):
     for goal_id in (NOBODY, TWO):
         call, request = cancelled(client, action, goal_id, stamp_ns - 1)
         assert (request, len(call.response.goals_canceling)) == (None, 0)
+        assert call.response.return_code == CancelCode.NONE, "so does rcl_action: none is as old as that"
         assert cancelled(client, action, goal_id, stamp_ns)[1].text == DROP
 
 
@@ -150,10 +151,25 @@ def test_what_cannot_be_cancelled_is_named(client, action):
     assert cancelled(client, action)[0].response.return_code == CancelCode.GOAL_TERMINATED
 
 
-def test_a_goal_without_conditions_ends_where_there_is_nothing_to_drop(client, action):
-    sent(client, action, goal="(and)")
-    action.report(replace(MOVING, goal="", mode="READY"))
-    assert result(client, action).response.result.result == "cancelled"
+@pytest.mark.parametrize("before", [replace(MOVING, goal="", mode="READY"), DONE, replace(DONE, result="failed")])
+def test_a_goal_without_conditions_ends_at_once_whatever_became_of_the_one_before(client, action, before):
+    client.call("send_goal", send_request(ONE, "(and)"))
+    action.poll().accept("no goal is open")
+    action.report(before)
+    response = result(client, action).response
+    assert (response.status, response.result.result) == (GoalState.ABORTED, "cancelled")
+    assert response.result.detail == "no goal is open"
+
+
+def test_a_goal_without_conditions_drops_the_open_one(client, action):
+    sent(client, action)
+    action.report(MOVING)
+    waits = result(client, action)
+    client.call("send_goal", send_request(TWO, "(and)"))
+    action.poll().accept(f"cancelled: {GOAL}")
+    action.report(replace(MOVING, mode="READY", result="cancelled"))
+    assert (waits.response.status, waits.response.result.result) == (GoalState.ABORTED, "cancelled")
+    assert client.states == {ONE: GoalState.ABORTED, TWO: GoalState.ABORTED}
 
 
 def test_who_waits_is_answered_when_the_executive_ends(client, action):
@@ -161,6 +177,13 @@ def test_who_waits_is_answered_when_the_executive_ends(client, action):
     waits = result(client, action)
     action.close()
     assert (waits.response.status, waits.response.result.result) == (GoalState.ABORTED, "stopped")
+
+
+def test_a_request_that_comes_as_the_executive_ends_is_answered(client, action):
+    sent(client, action)
+    call = client.call("get_result", result_request(ONE))
+    action.close()
+    assert call.response.result.result == "stopped"
 
 
 def test_an_unknown_goal_has_no_result(client, action):
@@ -174,8 +197,26 @@ def test_the_memory_of_goals_and_of_who_waits_is_bounded(client, action):
     assert len(client.states) == KEPT + 1
     newest = (2 * KEPT - 1).to_bytes(16, "big")
     calls = [result(client, action, newest) for _ in range(MAX_WAITING + 1)]
-    assert [len(call.responses) for call in calls] == [0] * MAX_WAITING + [1]
-    assert calls[-1].response.status == GoalState.EXECUTING
+    assert [len(call.responses) for call in calls] == [1] + [0] * MAX_WAITING, "the oldest may be of clients that died"
+    assert calls[0].response.status == GoalState.EXECUTING
+
+
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_goal_that_was_open_while_others_were_refused_is_known_when_it_has_ended(client, action, replaced):
+    sent(client, action)
+    action.report(MOVING)
+    for number in range(2 * KEPT):
+        client.call("send_goal", send_request(number.to_bytes(16, "big"), "(bad"))
+        action.poll().refuse("no")
+    waits = result(client, action)
+    if replaced:
+        sent(client, action, TWO)
+    else:
+        action.report(DONE)
+        client.call("send_goal", send_request(TWO, "(bad"))
+        action.poll().refuse("no")
+    for each in (waits, result(client, action)):
+        assert each.response.result.result == ("replaced" if replaced else "achieved")
 
 
 @given(st.sampled_from(["send_goal", "cancel_goal", "get_result"]), st.binary(max_size=64), st.booleans())
