@@ -14,7 +14,7 @@ import math
 import sys
 from dataclasses import asdict
 
-from tailor.runtime.bus.service import no_service
+from tailor.runtime.bus.service import ACCEPTED, no_service
 from tailor.schemas.errors import UsageError
 from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.number_checks import finite
@@ -41,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Send or drop the goal; 0 if every executive accepted that, 2 with the reason if not. With --wait see there."""
+    """Send or drop the goal: 0 if every executive accepted that, 2 with the reason if not; --wait has its own codes."""
     _check(arguments)
     with open_bus(arguments, "people") as session:
         follower = GoalFollower(session.inbox(["status"], "", newest_only=False)) if arguments.wait else None
@@ -50,12 +50,13 @@ def run(arguments: argparse.Namespace) -> int:
         answers = session.call_all(KEY, NOTHING if arguments.cancel else arguments.goal or "")
         nobody = NOBODY if session.connected else LOST
         answers = [(accepted, nobody if answer == no_service(KEY) else answer) for accepted, answer in answers]
-        if follower is not None and [accepted for accepted, _ in answers] == [True]:
-            return _followed(follower, arguments, answers[0][1])
+        if follower is not None and answers == [(True, ACCEPTED)]:
+            return _followed(follower, arguments)
     if any(answer == NOBODY for _, answer in answers) and (advice := key_advice(arguments, "sends goals")):
         print(advice, file=sys.stderr)
-    everyone = _print_answers(answers, arguments.json)
-    return 0 if everyone and follower is None else 1 if everyone else 2
+    if not _print_answers(answers, arguments.json):
+        return 2
+    return 1 if arguments.wait and len(answers) > 1 else 0  # nobody was waited for
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -84,7 +85,7 @@ def _print_answers(answers: list[tuple[bool, str]], as_json: bool) -> bool:
     return everyone
 
 
-def _followed(follower: GoalFollower, arguments: argparse.Namespace, answer: str) -> int:
+def _followed(follower: GoalFollower, arguments: argparse.Namespace) -> int:
     """Follow an accepted goal to its end: 0 if it was achieved, else 1."""
     timeout_s = math.inf if arguments.timeout is None else arguments.timeout
     try:
@@ -95,7 +96,7 @@ def _followed(follower: GoalFollower, arguments: argparse.Namespace, answer: str
     result = follower.wait.result
     if arguments.json:
         ended = {"result": "", "reason": "", "detail": "", "duration_s": None} if result is None else asdict(result)
-        print(json.dumps({"accepted": True, "answer": answer, **ended, "problem": problem}))
+        print(json.dumps({"accepted": True, "answer": ACCEPTED, **ended, "problem": problem}))
     elif result is None:
         print(problem, file=sys.stderr)
     else:

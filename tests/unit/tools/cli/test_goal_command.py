@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tailor.runtime.bus.service import no_service
 from tailor.schemas.messages import ExecStatus, Sample
 from tailor.tools.commands.run import goal as command
 from tailor.tools.main import main
@@ -104,6 +105,19 @@ def test_a_refused_goal_and_two_executives_are_not_waited_for(run):
     code, out, err, _ = run("--wait", answers=[(True, "accepted"), (True, "accepted")])
     assert (code, out) == (1, "accepted\naccepted\n")
     assert err.startswith("2 executives answered, expected one: ")
+
+
+def test_a_bus_that_is_lost_before_the_answer_is_named(run, monkeypatch):
+    monkeypatch.setattr(Bus, "connected", False)
+    code, out, err, _ = run("--wait", answers=[(False, no_service("exec/goal"))])
+    assert (code, out) == (2, "")
+    assert err.startswith("the bus was lost before an answer came: ")
+
+
+@pytest.mark.parametrize("before", [BEFORE, FAILED])
+def test_a_goal_without_conditions_is_over_when_it_is_answered(run, before):
+    answers = [(True, "no goal is open")]
+    assert run("(and)", "--wait", answers=answers, statuses=(before, before))[:3] == (0, "no goal is open\n", "")
 
 
 @pytest.mark.parametrize(
