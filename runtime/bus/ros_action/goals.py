@@ -37,6 +37,9 @@ class ClientGoals:
     def __iter__(self) -> Iterator[ClientGoal]:
         return iter(self._goals.values())
 
+    def __len__(self) -> int:
+        return len(self._goals)
+
     def get(self, goal: bytes) -> ClientGoal | None:
         """The goal with this id, if it is known."""
         return self._goals.get(goal)

@@ -15,6 +15,7 @@ from tailor.schemas.ros2.action_messages import CancelCode, GoalInfo, GoalResult
 
 DROP = "(and)"  # a goal without conditions drops the open one
 MAX_WAITING = 16  # requests for the result of an open goal
+STATES_TICKS = 10  # once a second, for who subscribes later: ROS 2's own servers keep the last message for them
 
 
 class GoalAction:
@@ -43,10 +44,9 @@ class GoalAction:
     def report(self, status: ExecStatus) -> None:
         """Take the status after a tick: feedback to the client of the open goal, and its result if it has ended."""
         goal = self._goals.pursued
-        if goal is None:
-            return
-        self._feedback.publish_encoded(messages.feedback_message(goal.info.id, status))
-        if self._goals.report(status):
+        if goal is not None:
+            self._feedback.publish_encoded(messages.feedback_message(goal.info.id, status))
+        if self._goals.report(status) or (self._goals and status.tick % STATES_TICKS == 0):
             self._tell()
 
     def close(self) -> None:

@@ -66,6 +66,11 @@ class ClientSession:
         return [(bytes(each.goal_id.uuid), each.feedback) for each in ros]
 
     @property
+    def published_states(self):
+        """How often the states were published."""
+        return len(self._heard[PARTS.status])
+
+    @property
     def states(self):
         """States by id, as published last."""
         ros = from_bytes(self._heard[PARTS.status][-1], PARTS.status.type)[0]

@@ -100,6 +100,21 @@ def test_a_goal_that_the_executive_refuses_is_aborted_with_the_cause(client, act
     assert client.states == {ONE: GoalState.ABORTED}
 
 
+def test_who_subscribes_late_hears_the_states_within_a_second(client, action):
+    for tick in range(20):
+        action.report(replace(MOVING, tick=tick))
+    assert client.published_states == 0, "there is no goal"
+    sent(client, action)
+    for tick in range(20, 30):
+        action.report(replace(MOVING, tick=tick))
+    action.report(replace(DONE, tick=30))
+    before = client.published_states
+    for tick in range(31, 51):
+        action.report(replace(DONE, tick=tick))
+    assert client.published_states == before + 2
+    assert client.states == {ONE: GoalState.SUCCEEDED}
+
+
 def test_a_goal_that_is_sent_twice_is_rejected(client, action):
     sent(client, action)
     call = client.call("send_goal", send_request(ONE, GOAL))
