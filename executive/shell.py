@@ -55,8 +55,8 @@ class Shell:
         self._notifier = notifier
         self._provenance = json.dumps(provenance, sort_keys=True)
         self._inbox = session.inbox((*domain.sensors, "driver"), domain.robot)
-        self._goals = session.service_server("exec/goal")
         self._action = GoalAction(session)
+        self._goals = session.service_server("exec/goal", self._action)
         topics = (*(outlet.topic for outlet in outlets_of(domain)), "self_arm", *reports())
         self._publishers = {topic: session.publisher(topic, domain.robot) for topic in topics}
         external = context.settings.external
@@ -129,7 +129,7 @@ class Shell:
         So is one that may have waited while this process or the bus stood still: people were told that nobody responds.
         One that only drops the open goal moves nothing, so it counts.
         """
-        request, late = self._goals.poll() or self._action.poll(), self._late_goals(period, received)
+        request, late = self._goals.poll(), self._late_goals(period, received)
         if request is None:
             return first
         goal = request.text.strip() or self._context.problem.goal_text

@@ -92,14 +92,16 @@ def text_request(query: Any) -> ServiceRequest:
 
 
 class ServiceServer:
-    """Requests of one service, polled once a tick."""
+    """Requests of one service, polled once a tick; its sources take turns, so that many from one delay no other."""
 
     def __init__(self, *sources: RequestSource) -> None:
-        self._sources = sources
+        self._sources = list(sources)  # the one whose request was served last is the last
 
     def poll(self) -> ServiceRequest | None:
         """Next request, None if there is none."""
-        for source in self._sources:
+        for source in tuple(self._sources):
             if (request := source.receive()) is not None:
+                self._sources.remove(source)
+                self._sources.append(source)
                 return request
         return None

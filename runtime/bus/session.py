@@ -200,8 +200,8 @@ class Session:
         self._kept.append(self._zenoh.declare_subscriber(at, zenoh.handlers.Callback(offer, indirect=False)))
         return latch
 
-    def service_server(self, key: str) -> ServiceServer:
-        """Server of the requests under `key`, and of ROS 2's if it knows the service; a loop polls it."""
+    def service_server(self, key: str, *others: RequestSource) -> ServiceServer:
+        """Server of the requests under `key`, of ROS 2's if it knows the service, and of others; a loop polls it."""
         sources: list[RequestSource] = [
             QueryableSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16)), text_request)
         ]
@@ -210,7 +210,7 @@ class Session:
 
             service.prime()
             sources.append(self.ros_service(service.set_goal(), goal_request))
-        return ServiceServer(*sources)
+        return ServiceServer(*sources, *others)
 
     def ros_service(self, named: Named, read: Callable[[RosCall], ServiceRequest | None]) -> RequestSource:
         """Requests of ROS 2's clients of a service, under rmw_zenoh; `read` is as of QueryableSource."""

@@ -19,7 +19,10 @@ STATES_TICKS = 10  # once a second, for who subscribes later: ROS 2's own server
 
 
 class GoalAction:
-    """The action of one executive, which polls it and reports to it once a tick; without effect in a plain profile."""
+    """The action of one executive, whose loop serves its requests and reports to it once a tick.
+
+    It has no effect in a plain profile.
+    """
 
     def __init__(self, session: Session) -> None:
         """Declare its services and topics, if the session is part of ROS 2's graph."""
@@ -34,28 +37,30 @@ class GoalAction:
             self._sent = session.ros_service(parts.send_goal, self._send)
             self._feedback, self._states = session.ros_publisher(parts.feedback), session.ros_publisher(parts.status)
 
-    def poll(self) -> ServiceRequest | None:
-        """Next request to pursue or to drop a goal; requests for results are answered, or wait."""
-        if not self._declared:
-            return None
-        self._receive_results()
-        return self._cancels.receive() or self._sent.receive()
+    def receive(self) -> ServiceRequest | None:
+        """Next request to pursue or to drop a goal."""
+        return self._cancels.receive() or self._sent.receive() if self._declared else None
 
     def report(self, status: ExecStatus) -> None:
-        """Take the status after a tick: feedback to the client of the open goal, and its result if it has ended."""
+        """Take the status after a tick: feedback about the open goal, and results of those that have ended."""
         goal = self._goals.pursued
         if goal is not None:
             self._feedback.publish_encoded(messages.feedback_message(goal.info.id, status))
         if self._goals.report(status) or (self._goals and status.tick % STATES_TICKS == 0):
             self._tell()
+        self.answer()
+
+    def answer(self) -> None:
+        """Answer the requests for results that have come, of an open goal when it has ended."""
+        if self._declared:
+            for _ in range(MAX_WAITING):
+                self._results.receive()
 
     def close(self) -> None:
         """The executive ends: whoever waits for a result gets one."""
-        if not self._declared:
-            return
         if self._goals.end(GoalResult("stopped")):
             self._tell()
-        self._receive_results()  # that came since the last tick
+        self.answer()
 
     def _send(self, call: RosCall) -> ServiceRequest | None:
         sent = messages.sent_goal(call.data)
@@ -96,10 +101,6 @@ class GoalAction:
                 call.respond(messages.cancel_response(CancelCode.REJECTED, ()))
 
         return ServiceRequest(DROP, respond)
-
-    def _receive_results(self) -> None:
-        for _ in range(MAX_WAITING):
-            self._results.receive()
 
     def _result(self, call: RosCall) -> None:
         wanted = messages.asked_result(call.data)

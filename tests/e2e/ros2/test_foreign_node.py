@@ -138,13 +138,13 @@ def test_it_pursues_a_goal_by_the_action(ros, endpoint):
         return answered
 
     sent = called(parts.send_goal, "string goal", "bool accepted\nbuiltin_interfaces/Time stamp", goal="(visited a)")
-    request = wait_until(action.poll)
+    request = wait_until(action.receive)
     assert request.text == "(visited a)"
     request.accept()
     assert wait_until(lambda: sent)[0].accepted
     fields = "int8 status\nstring result\nstring reason\nstring detail\nfloat64 duration_s"
     result = called(parts.get_result, "", fields)
-    wait_until(lambda: action.poll() or action._waiting, "the request for the result")
+    wait_until(lambda: action.answer() or action._waiting, "the request for the result")
     status = m.ExecStatus(0, 1, "EXECUTING", "", "line", "(visited a)", "", "slide", 0, 0.0, 0.0)
     action.report(status)
     action.report(replace(status, mode="READY", result="achieved"))

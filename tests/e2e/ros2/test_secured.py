@@ -86,7 +86,7 @@ def test_people_send_goals_by_the_action_and_others_do_not(bus, role):
             wait_until(lambda: querier.matching_status.matching, "a server")
         for session, goal in ((other, "(theirs)"), (people, "(ours)")):
             session._zenoh.get(part.key(0), payload=send_request(b"1" * 16, goal))
-        assert wait_until(action.poll).text == "(ours)"
+        assert wait_until(action.receive).text == "(ours)"
 
 
 def test_a_role_is_announced_as_what_it_may_be_and_everybody_sees_it(bus):

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from tailor.executive.shell import Shell
-from tailor.runtime.bus.service import ServiceRequest
+from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import TickReport, VelocityCommand
 from tailor.schemas.ros2.action_messages import GoalState
@@ -43,10 +43,10 @@ class Session:
         self._tick += 1
         return odometry(now_ns, 0.0, self._tick), driver(now_ns)
 
-    def service_server(self, key):
-        return self
+    def service_server(self, key, *others):
+        return ServiceServer(self, *others)
 
-    def poll(self):
+    def receive(self):
         return None
 
     def publisher(self, topic, robot):
@@ -110,7 +110,7 @@ class Goals(Session):
         super().__init__()
         self.clock, self.requests, self.answers = clock, requests, []
 
-    def poll(self):
+    def receive(self):
         at_ns = min(self.requests, default=None)
         if at_ns is None or self.clock.ns < at_ns:
             return None
@@ -188,7 +188,8 @@ def results_of(goals, then=()):
 
     shell.run("", act)
     calls = [session.call("get_result", result_request(each)) for each in ids.values()]
-    shell._action.poll()
+    shell._action.receive()
+    shell._action.answer()
     return [(call.response.status, call.response.result.result, call.response.result.detail) for call in calls]
 
 
@@ -205,6 +206,19 @@ def test_a_client_of_ros_cancels_its_goal_and_one_that_is_open_at_the_end_is_abo
         (GoalState.ABORTED, "replaced", ""),
         (GoalState.ABORTED, "stopped", ""),
     ]
+
+
+def test_a_client_of_ros_cancels_while_another_client_sets_goals_all_the_time():
+    class Flood(RosSession):
+        def receive(self):
+            return ServiceRequest("(visited b)", lambda *_: None)
+
+    session, goal_id = Flood(), bytes(range(16))
+    shell = Shell(line_context(), session, Clock(), {})
+    calls = [session.call("send_goal", send_request(goal_id, "(visited a)"))]
+    calls.append(session.call("cancel_goal", cancel_request(goal_id)))
+    shell.run("", lambda state: state.tick == 9)
+    assert all(call.responses for call in calls)
 
 
 def test_a_goal_of_ros_without_conditions_drops_the_open_one_and_ends():

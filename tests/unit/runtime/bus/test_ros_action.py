@@ -32,7 +32,7 @@ def action(client):
 def sent(client, action, goal_id=ONE, goal=GOAL):
     """A goal that the executive accepts."""
     call = client.call("send_goal", send_request(goal_id, goal))
-    request = action.poll()
+    request = action.receive()
     assert request.text == goal
     request.accept()
     assert call.response.accepted
@@ -41,13 +41,13 @@ def sent(client, action, goal_id=ONE, goal=GOAL):
 
 def result(client, action, goal_id=ONE):
     call = client.call("get_result", result_request(goal_id))
-    assert action.poll() is None
+    action.answer()
     return call
 
 
 def cancelled(client, action, goal_id=ONE, stamp_ns=0):
     call = client.call("cancel_goal", cancel_request(goal_id, stamp_ns))
-    return call, action.poll()
+    return call, action.receive()
 
 
 def test_a_goal_is_pursued_with_feedback_until_it_is_achieved(client, action):
@@ -91,7 +91,7 @@ def test_a_goal_that_ends_otherwise_is_aborted_with_the_cause(client, action, en
 
 def test_a_goal_that_the_executive_refuses_is_aborted_with_the_cause(client, action):
     call = client.call("send_goal", send_request(ONE, "(bad"))
-    action.poll().refuse("goal:1:1: this parenthesis is never closed")
+    action.receive().refuse("goal:1:1: this parenthesis is never closed")
     response = result(client, action).response
     assert (call.response.accepted, response.status, response.result.result) == (True, GoalState.ABORTED, "refused")
     assert response.result.detail == "goal:1:1: this parenthesis is never closed"
@@ -118,7 +118,7 @@ def test_who_subscribes_late_hears_the_states_within_a_second(client, action):
 def test_a_goal_that_is_sent_twice_is_rejected(client, action):
     sent(client, action)
     call = client.call("send_goal", send_request(ONE, GOAL))
-    assert (action.poll(), call.response.accepted) == (None, False)
+    assert (action.receive(), call.response.accepted) == (None, False)
 
 
 def test_the_goal_of_another_client_replaces_the_open_one(client, action):
@@ -169,7 +169,7 @@ def test_what_cannot_be_cancelled_is_named(client, action):
 @pytest.mark.parametrize("before", [replace(MOVING, goal="", mode="READY"), DONE, replace(DONE, result="failed")])
 def test_a_goal_without_conditions_ends_at_once_whatever_became_of_the_one_before(client, action, before):
     client.call("send_goal", send_request(ONE, "(and)"))
-    action.poll().accept("no goal is open")
+    action.receive().accept("no goal is open")
     action.report(before)
     response = result(client, action).response
     assert (response.status, response.result.result) == (GoalState.ABORTED, "cancelled")
@@ -181,7 +181,7 @@ def test_a_goal_without_conditions_drops_the_open_one(client, action):
     action.report(MOVING)
     waits = result(client, action)
     client.call("send_goal", send_request(TWO, "(and)"))
-    action.poll().accept(f"cancelled: {GOAL}")
+    action.receive().accept(f"cancelled: {GOAL}")
     action.report(replace(MOVING, mode="READY", result="cancelled"))
     assert (waits.response.status, waits.response.result.result) == (GoalState.ABORTED, "cancelled")
     assert client.states == {ONE: GoalState.ABORTED, TWO: GoalState.ABORTED}
@@ -222,14 +222,14 @@ def test_a_goal_that_was_open_while_others_were_refused_is_known_when_it_has_end
     action.report(MOVING)
     for number in range(2 * KEPT):
         client.call("send_goal", send_request(number.to_bytes(16, "big"), "(bad"))
-        action.poll().refuse("no")
+        action.receive().refuse("no")
     waits = result(client, action)
     if replaced:
         sent(client, action, TWO)
     else:
         action.report(DONE)
         client.call("send_goal", send_request(TWO, "(bad"))
-        action.poll().refuse("no")
+        action.receive().refuse("no")
     for each in (waits, result(client, action)):
         assert each.response.result.result == ("replaced" if replaced else "achieved")
 
@@ -241,7 +241,8 @@ def test_whatever_bytes_come_are_answered_once(part, data, opened):
     if opened:
         sent(client, action)
     call = client.call(part, data)
-    request = action.poll()
+    request = action.receive()
+    action.answer()
     if request is not None:
         request.accept()
     assert len(call.responses) == 1
@@ -253,4 +254,4 @@ def test_a_session_without_ros_declares_nothing():
     action = GoalAction(client)
     action.report(MOVING)
     action.close()
-    assert (action.poll(), client.waiting) == (None, {})
+    assert (action.receive(), client.waiting) == (None, {})
