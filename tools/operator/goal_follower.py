@@ -20,9 +20,9 @@ SILENT = f"the executive has been silent for {SILENT_S:g} s: `tailor status` tel
 class GoalFollower:
     """Follows one goal by the statuses in an inbox."""
 
-    def __init__(self, inbox: Inbox) -> None:
-        """`inbox`: of the topic "status"."""
-        self.wait = GoalWait()
+    def __init__(self, inbox: Inbox, goal: str) -> None:
+        """`inbox`: of the topic "status"; `goal`: as it is sent, empty for that of the scenario."""
+        self.wait = GoalWait(goal)
         self._inbox = inbox
 
     def look(self) -> None:
@@ -41,7 +41,7 @@ class GoalFollower:
         Returns:
           Why it is not known what became of the goal; "" if it is.
         """
-        self._hear()  # what came before the answer is of a tick before the goal
+        self._hear()  # what came before the answer may be of a tick before the goal
         begun_s, last = time.monotonic(), ""
         self.wait.accept(begun_s)
         while self.wait.result is None:

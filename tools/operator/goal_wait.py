@@ -18,10 +18,11 @@ class GoalWait:
       line: What the executive does or waits for, for people.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, goal: str = "") -> None:
+        """`goal`: as it is sent; empty: that of the scenario."""
         self.result: GoalResult | None = None
         self.line = ""
-        self._followed = FollowedGoal()
+        self._followed = FollowedGoal(goal)
         self._before: tuple[str, int] | None = None  # sender and tick of the newest status before the acceptance
         self._accepted = False
         self._heard_s = 0.0

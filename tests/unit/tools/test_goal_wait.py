@@ -19,7 +19,7 @@ def sample(sender=OURS, **changed):
 @pytest.fixture
 def wait():
     """Accepted in tick 7, at 100 s."""
-    waiting = GoalWait()
+    waiting = GoalWait("(visited a)")
     waiting.hear(sample(tick=6, goal="(visited b)", result="achieved"), 99.9)
     waiting.accept(100.0)
     return waiting
@@ -45,6 +45,22 @@ def test_a_status_of_a_tick_before_the_acceptance_tells_nothing(wait):
 def test_a_goal_that_is_done_in_its_first_tick_is_achieved(wait):
     wait.hear(sample(mode="READY", result="achieved"), 100.1)
     assert wait.result == GoalResult("achieved")
+
+
+def test_a_goal_that_was_replaced_before_its_first_status_was_heard_is_told_from_the_next_one():
+    waiting = GoalWait("(visited a)")
+    waiting.hear(sample(tick=7), 100.3)  # of the acceptance, read late, as is that of tick 8
+    waiting.accept(100.3)
+    waiting.hear(sample(tick=9, goal="(visited b)", result="achieved"), 100.4)
+    assert waiting.result.result == "replaced"
+
+
+def test_the_goal_of_the_scenario_is_known_from_the_first_status():
+    waiting = GoalWait()
+    waiting.accept(100.0)
+    waiting.hear(sample(), 100.1)
+    waiting.hear(sample(tick=8, goal="(visited b)"), 100.2)
+    assert waiting.result.result == "replaced"
 
 
 def test_another_executive_tells_nothing_about_it(wait):

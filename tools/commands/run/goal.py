@@ -43,11 +43,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Send or drop the goal: 0 if every executive accepted that, 2 with the reason if not; --wait has its own codes."""
     _check(arguments)
+    goal = NOTHING if arguments.cancel else arguments.goal or ""
     with open_bus(arguments, "people") as session:
-        follower = GoalFollower(session.inbox(["status"], "", newest_only=False)) if arguments.wait else None
+        follower = GoalFollower(session.inbox(["status"], "", newest_only=False), goal) if arguments.wait else None
         if follower is not None:
             follower.look()
-        answers = session.call_all(KEY, NOTHING if arguments.cancel else arguments.goal or "")
+        answers = session.call_all(KEY, goal)
         nobody = NOBODY if session.connected else LOST
         answers = [(accepted, nobody if answer == no_service(KEY) else answer) for accepted, answer in answers]
         if follower is not None and answers == [(True, ACCEPTED)]:

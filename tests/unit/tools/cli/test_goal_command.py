@@ -67,6 +67,7 @@ def test_a_goal_is_sent_and_followed_to_its_end(run):
 
 
 def test_the_status_of_the_goal_before_tells_nothing_although_it_comes_after_the_look(run):
+    assert run("(visited a)", "--wait", statuses=(BEFORE, OPEN, replace(DONE, goal="(visited b)")))[0] == 1, "replaced"
     stale = replace(BEFORE, goal="(visited a)")
     assert run("--wait", statuses=(stale, replace(stale, tick=5), replace(OPEN, tick=6), FAILED))[0] == 1
 
