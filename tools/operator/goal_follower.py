@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 
 from tailor.runtime.bus.inbox import Inbox
+from tailor.runtime.stopping import Stop
 from tailor.schemas.reason_text import without_numbers
-from tailor.tools.cli.plain_text import note, plain
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.operator.goal_wait import SILENT_S, GoalWait
 
 POLL_S = 0.05
@@ -31,20 +31,21 @@ class GoalFollower:
         while not self._hear() and time.monotonic() < end_s:
             time.sleep(POLL_S)
 
-    def follow(self, timeout_s: float = math.inf, show: Callable[[str], None] = note) -> str:
+    def follow(self, timeout_s: float, show: Callable[[str], None], stop: Stop) -> str:
         """Print a line whenever what the executive does has changed, until the goal has ended.
 
         Args:
           timeout_s: Give up then; the goal is still pursued.
           show: Prints a line.
+          stop: Ends the wait; the goal is still pursued.
 
         Returns:
-          Why it is not known what became of the goal; "" if it is.
+          Why it is not known what became of the goal; "" if it is, or a stop was requested.
         """
         self._hear()  # what came before the answer may be of a tick before the goal
         begun_s, last = time.monotonic(), ""
         self.wait.accept(begun_s)
-        while self.wait.result is None:
+        while self.wait.result is None and not stop.requested:
             self._hear()
             now_s, line = time.monotonic(), self.wait.line
             if without_numbers(line) != last:

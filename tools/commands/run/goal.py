@@ -15,6 +15,7 @@ import sys
 from dataclasses import asdict
 
 from tailor.runtime.bus.service import ACCEPTED, no_service
+from tailor.runtime.stopping import stoppable
 from tailor.schemas.errors import UsageError
 from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.number_checks import finite
@@ -89,12 +90,12 @@ def _print_answers(answers: list[tuple[bool, str]], as_json: bool) -> bool:
 def _followed(follower: GoalFollower, arguments: argparse.Namespace) -> int:
     """Follow an accepted goal to its end: 0 if it was achieved, else 1."""
     timeout_s = math.inf if arguments.timeout is None else arguments.timeout
-    try:
-        problem = follower.follow(timeout_s, (lambda _: None) if arguments.json else note)
-    except KeyboardInterrupt:
-        note(PURSUED, to_stderr=True)
-        raise
+    with stoppable() as stop:
+        problem = follower.follow(timeout_s, (lambda _: None) if arguments.json else note, stop)
     result = follower.wait.result
+    if result is None and stop.requested:
+        note(PURSUED, to_stderr=True)
+        return stop.exit_code
     if arguments.json:
         ended = {"result": "", "reason": "", "detail": "", "duration_s": None} if result is None else asdict(result)
         print(json.dumps({"accepted": True, "answer": ACCEPTED, **ended, "problem": problem}))

@@ -1,6 +1,7 @@
 """`tailor goal --wait` against an executive that answers as the test says, without a bus."""
 
 import json
+import signal
 import time
 from contextlib import contextmanager
 from dataclasses import replace
@@ -90,14 +91,28 @@ def test_what_nobody_tells_is_named_and_the_goal_stays_open(run):
     assert told["problem"].startswith("no end within 0.1 s")
 
 
-def test_an_interrupted_wait_says_that_the_goal_is_pursued(run, monkeypatch):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("flags", [(), ("--json",)])
+def test_an_interrupted_wait_says_that_the_goal_is_pursued(run, monkeypatch, number, flags):
+    monkeypatch.setattr(command.GoalFollower, "_hear", lambda self: signal.raise_signal(number))
+    monkeypatch.setattr(command.GoalFollower, "look", lambda self: None)
+    pursued = "the goal is still pursued: `tailor goal --cancel` drops it\n"
+    assert run("--wait", *flags)[:3] == (128 + number, "", pursued)
+    assert signal.getsignal(number) is not signal.SIG_IGN
+
+
+def test_a_goal_that_has_ended_when_the_wait_is_interrupted_is_told(run, monkeypatch):
+    hear = command.GoalFollower._hear
+
     def interrupted(self):
-        raise KeyboardInterrupt
+        heard = hear(self)
+        if self.wait.result is not None:
+            signal.raise_signal(signal.SIGTERM)
+        return heard
 
     monkeypatch.setattr(command.GoalFollower, "_hear", interrupted)
-    monkeypatch.setattr(command.GoalFollower, "look", lambda self: None)
-    code, _, err, _ = run("--wait")
-    assert (code, err.splitlines()[0]) == (130, "the goal is still pursued: `tailor goal --cancel` drops it")
+    code, out, err, _ = run("--wait")
+    assert (code, out.splitlines()[-1], err) == (0, "achieved after 2.0 s", "")
 
 
 def test_a_refused_goal_and_two_executives_are_not_waited_for(run):
