@@ -208,6 +208,25 @@ def test_a_client_of_ros_cancels_its_goal_and_one_that_is_open_at_the_end_is_abo
     ]
 
 
+def test_a_goal_of_ros_that_waited_while_the_executive_stood_still_is_refused_and_a_later_one_counts():
+    clock, session, waits = Clock(), RosSession(), []
+    shell = Shell(line_context(), session, clock, {})
+
+    def act(state):
+        if state.tick in (10, 40):
+            goal_id = bytes([state.tick]) * 16
+            session.call("send_goal", send_request(goal_id, "(visited a)"))
+            clock.ns += 12 * 10**9 * (state.tick == 10)
+        if state.tick in (12, 42):
+            waits.append(session.call("get_result", result_request(bytes([state.tick - 2]) * 16)))
+        return state.tick == 50
+
+    shell.run("", act)
+    results = [(call.response.status, call.response.result.result) for call in waits]
+    assert results == [(GoalState.ABORTED, "refused"), (GoalState.ABORTED, "stopped")]
+    assert waits[0].response.result.detail.startswith("the executive stood still for 1")
+
+
 def test_a_client_of_ros_cancels_while_another_client_sets_goals_all_the_time():
     class Flood(RosSession):
         def receive(self):
