@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-import numpy as np
-
 from tailor.schemas.errors import RefusedValueError, Rejected
 from tailor.schemas.messages import ExecStatus
 from tailor.schemas.ros2.action import ACTION, CANCEL, STATES, achieve_goal
@@ -138,6 +136,8 @@ def _info(goal: GoalInfo) -> Any:
 
 
 def _uuid(goal: bytes) -> Any:
+    import numpy as np  # of no use to a command that only waits for a goal
+
     return ros_class("unique_identifier_msgs/msg/UUID")(np.frombuffer(goal, dtype=np.uint8))
 
 

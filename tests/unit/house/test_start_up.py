@@ -22,7 +22,7 @@ WITHOUT = {
     "estop": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags", "rich", "mcap", "asyncio", "robots"},
     "arm": {*HEAVY, "onnxruntime", "executive"},
     "status": {*HEAVY, "onnxruntime", "executive"},
-    "goal": {*HEAVY, "onnxruntime", "executive"},
+    "goal": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags"},
     "sim": {*HEAVY, "onnxruntime"},
     "up": {*HEAVY, "onnxruntime"},
 }
