@@ -5,7 +5,6 @@ import random
 import signal
 import subprocess
 import time
-from contextlib import contextmanager
 from functools import partial
 
 import pytest
@@ -19,6 +18,7 @@ from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit
 from tests.support.bus_system import answers, bus_system, child_pid, free_endpoint, guarded_robot, secured_system
 from tests.support.driven import Driven, burners
+from tests.support.injection.signals import heeded_signals
 from tests.support.patience import PATIENCE_S, wait_until
 
 pytestmark = pytest.mark.xdist_group("live")
@@ -118,17 +118,6 @@ class StandingDriver:
         for sample in self.waiting:
             self.driver.take([sample], {}, time.monotonic_ns())
             yield self.driver.guard.mode
-
-
-@contextmanager
-def heeded_signals():
-    """Children heed them, as those of a terminal: tests that run by `nohup` or in the background ignore some."""
-    before = {number: signal.signal(number, signal.SIG_DFL) for number in SIGNALS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 @pytest.mark.promise("P52")

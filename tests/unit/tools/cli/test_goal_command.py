@@ -12,6 +12,7 @@ from tailor.runtime.bus.service import no_service
 from tailor.schemas.messages import ExecStatus, Sample
 from tailor.tools.commands.run import goal as command
 from tailor.tools.main import main
+from tests.support.injection.signals import heeded_signals
 
 SENDER = "ab" * 16
 OPEN = ExecStatus(10**9, 5, "EXECUTING", "", "line", "(visited a)", "", "slide", 0, 0.5, 3.0)
@@ -97,8 +98,9 @@ def test_an_interrupted_wait_says_that_the_goal_is_pursued(run, monkeypatch, num
     monkeypatch.setattr(command.GoalFollower, "_hear", lambda self: signal.raise_signal(number))
     monkeypatch.setattr(command.GoalFollower, "look", lambda self: None)
     pursued = "the goal is still pursued: `tailor goal --cancel` drops it\n"
-    assert run("--wait", *flags)[:3] == (128 + number, "", pursued)
-    assert signal.getsignal(number) is not signal.SIG_IGN
+    with heeded_signals():
+        assert run("--wait", *flags)[:3] == (128 + number, "", pursued)
+        assert signal.getsignal(number) is not signal.SIG_IGN
 
 
 def test_a_goal_that_has_ended_when_the_wait_is_interrupted_is_told(run, monkeypatch):
@@ -111,7 +113,8 @@ def test_a_goal_that_has_ended_when_the_wait_is_interrupted_is_told(run, monkeyp
         return heard
 
     monkeypatch.setattr(command.GoalFollower, "_hear", interrupted)
-    code, out, err, _ = run("--wait")
+    with heeded_signals():
+        code, out, err, _ = run("--wait")
     assert (code, out.splitlines()[-1], err) == (0, "achieved after 2.0 s", "")
 
 

@@ -7,18 +7,16 @@ from collections.abc import Iterator
 
 import pytest
 
-from tailor.runtime.stopping import SIGNALS
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.commands.run import demo, letters, up
 from tailor.tools.main import main
+from tests.support.injection.signals import heeded_signals
 
 
 @pytest.fixture(autouse=True)
 def handlers() -> Iterator[None]:
-    before = {number: signal.signal(number, signal.SIG_DFL) for number in SIGNALS}
-    yield
-    for number, handler in before.items():
-        signal.signal(number, handler)
+    with heeded_signals():
+        yield
 
 
 @pytest.mark.parametrize(
