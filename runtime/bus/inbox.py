@@ -12,12 +12,13 @@ from typing import Protocol
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import Origin, unpack
-from tailor.runtime.bus.encoding import encoding_of, is_of_other_type
+from tailor.runtime.bus.encoding import encoding_of, is_of_other_type, named_type
 from tailor.runtime.clock import wall_ns
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import EStop, Sample
+from tailor.schemas.messages import EStop, Message, Sample
 from tailor.schemas.topics import Topic
+from tailor.schemas.typesystem import type_of
 
 MAX_SENDERS = 32  # of a topic, whose newest sequence numbers are remembered
 EVENT_DEPTH = 16  # events and commands may come several in a tick, e.g. two arming requests
@@ -33,6 +34,15 @@ class Raw:
     encoding: str
     is_put: bool  # False for zenoh's delete
     received_wall_ns: int | None
+
+
+def message_of(raw: Raw) -> Message | None:
+    """The message of a publication, by the type that it names; None for a delete, and for foreign and damaged ones."""
+    kind = type_of(named_type(raw.encoding))
+    if kind is None or not raw.is_put:
+        return None
+    message = decode(kind, raw.payload)
+    return None if isinstance(message, Rejected) else message
 
 
 class Source(Protocol):

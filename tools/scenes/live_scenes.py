@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tailor.runtime.bus.attachment import unpack
-from tailor.runtime.bus.encoding import named_type
-from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.inbox import message_of
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import MonotonicClock
 from tailor.runtime.loop import Loop
 from tailor.runtime.processes.notify import SILENT, Notifier
-from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import Message
-from tailor.schemas.typesystem import type_of
 from tailor.tools.scenes.scene_feed import SceneFeed
 
 POLL_NS = 50_000_000
@@ -43,7 +39,8 @@ def _publish(session: Session, queue: IngestQueue, stopped: Callable[[], bool], 
     while not stopped():
         period = loop.wait_for_next_period()
         for raw in queue.drain():
-            message = _read(raw) if feed.wants(raw.key) else None
+            wanted = feed.wants(raw.key) and not isinstance(unpack(raw.attachment), Rejected)
+            message = message_of(raw) if wanted else None
             if message is None:
                 continue
             for topic, made in feed.messages_after(period.now_ns / 1e9, raw.key, message):
@@ -54,12 +51,3 @@ def _publish(session: Session, queue: IngestQueue, stopped: Callable[[], bool], 
         if feed.fault != fault:
             fault = feed.fault
             notifier.status(f"scene: {fault}")
-
-
-def _read(raw: Raw) -> Message | None:
-    """The message of a publication; None for foreign and damaged ones."""
-    kind = type_of(named_type(raw.encoding))
-    if kind is None or not raw.is_put or isinstance(unpack(raw.attachment), Rejected):
-        return None
-    message = decode(kind, raw.payload)
-    return None if isinstance(message, Rejected) else message

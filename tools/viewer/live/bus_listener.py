@@ -9,15 +9,11 @@ from collections.abc import Callable
 
 from tailor.runtime.bus.arrival import Instant, arrival_ns
 from tailor.runtime.bus.attachment import unpack
-from tailor.runtime.bus.encoding import named_type
-from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.inbox import Raw, message_of
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
-from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import Message
-from tailor.schemas.typesystem import type_of
 from tailor.tools.viewer.live.broadcast import EventBroadcast
 from tailor.tools.viewer.recorded_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
@@ -64,7 +60,7 @@ class BusListener:
         events: list[Event] = []
         now = Instant(now_ns, self._wall())
         for raw in self._intake.drain():
-            message = _read(raw)
+            message = message_of(raw)
             if message is not None and self._wanted(raw):
                 events += self._timeline.events_of(self._at_s(raw, now), raw.key, message)
         self._previous = now
@@ -92,12 +88,3 @@ class BusListener:
             return True
         origin = unpack(raw.attachment)
         return not isinstance(origin, Rejected) and origin.sender.startswith(self._sender)
-
-
-def _read(raw: Raw) -> Message | None:
-    """The message of a publication; None for foreign and damaged ones."""
-    kind = type_of(named_type(raw.encoding))
-    if kind is None or not raw.is_put:
-        return None
-    message = decode(kind, raw.payload)
-    return None if isinstance(message, Rejected) else message
