@@ -11,6 +11,7 @@ from typing import Literal, get_args
 Role = Literal["executive", "driver", "people", "recorder", "observer", "scene", "player"]
 ROLES: tuple[Role, ...] = get_args(Role)
 MAX_REQUEST_BYTES = 65_536  # of any service
+DROP = "(and)"  # a goal without conditions drops the open one
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from tailor.schemas.messages import ExecStatus
 from tailor.schemas.ros2 import action_messages as messages
 from tailor.schemas.ros2.action import achieve_goal
 from tailor.schemas.ros2.action_messages import CancelCode, GoalInfo, GoalResult, GoalState
+from tailor.schemas.services import DROP
 
-DROP = "(and)"  # a goal without conditions drops the open one
 MAX_WAITING = 16  # requests for the result of an open goal
 STATES_TICKS = 10  # once a second, for who subscribes later: ROS 2's own servers keep the last message for them
 

@@ -18,12 +18,12 @@ from tailor.runtime.bus.service import ACCEPTED, no_service
 from tailor.runtime.stopping import stoppable
 from tailor.schemas.errors import UsageError
 from tailor.schemas.reason_text import result_text
+from tailor.schemas.services import DROP
 from tailor.tools.cli.number_checks import finite
 from tailor.tools.cli.plain_text import note, plain
 from tailor.tools.cli.systems.endpoint import configure_bus, key_advice, open_bus
 from tailor.tools.operator.goal_follower import PURSUED, GoalFollower
 
-NOTHING = "(and)"  # without conditions: drops the open goal
 KEY = "exec/goal"
 NOBODY = f"{no_service(KEY)}: no executive is running, or it stands still; `tailor status` tells"
 LOST = "the bus was lost before an answer came: the request may count or not; `tailor status` shows the goal"
@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Send or drop the goal: 0 if every executive accepted that, 2 with the reason if not; --wait has its own codes."""
     _check(arguments)
-    goal = NOTHING if arguments.cancel else arguments.goal or ""
+    goal = DROP if arguments.cancel else arguments.goal or ""
     with open_bus(arguments, "people") as session:
         follower = GoalFollower(session.inbox(["status"], "", newest_only=False), goal) if arguments.wait else None
         if follower is not None:

@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tailor.runtime.bus.ros_action.goals import KEPT
-from tailor.runtime.bus.ros_action.server import DROP, MAX_WAITING, GoalAction
+from tailor.runtime.bus.ros_action.server import MAX_WAITING, GoalAction
 from tailor.schemas.messages import ExecStatus
 from tailor.schemas.ros2.action_messages import CancelCode, GoalState
 from tailor.schemas.ros2.profiles import PLAIN
+from tailor.schemas.services import DROP
 from tests.support.ros2.action_client import ClientSession, cancel_request, result_request, send_request
 
 ONE, TWO, NOBODY = b"1" * 16, b"2" * 16, bytes(16)
