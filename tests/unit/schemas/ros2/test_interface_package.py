@@ -64,7 +64,7 @@ def test_the_manifest_and_the_build_name_the_package_and_every_interface(tmp_pat
     manifest = ElementTree.parse(tmp_path / "package.xml").getroot()
     assert (manifest.findtext("name"), manifest.findtext("version")) == ("tailor_msgs", __version__)
     build = (tmp_path / "CMakeLists.txt").read_text()
-    assert all(f'"{name}"' in build for name in files() if name.endswith((".msg", ".srv")))
+    assert all(f'"{name}"' in build for name in files() if name.endswith((".msg", ".srv", ".action")))
 
 
 def test_the_service_file_has_the_two_parts_of_the_definition():
