@@ -10,6 +10,7 @@ from tailor.runtime.bus import zenoh_config
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
+from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.realtime import elevate_bus_threads, inherited_fifo
@@ -167,8 +168,6 @@ def _no_session(endpoint: str, identity: Identity | None) -> UsageError:
 
 
 def _fault_of_key(identity: Identity) -> str:
-    from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
-
     try:
         check_files(identity)
     except UsageError as error:

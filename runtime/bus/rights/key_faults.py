@@ -1,19 +1,20 @@
 """What is wrong with the files of a key, in words: zenoh tells only that no session opens.
 
-It loads cryptography, so whoever opens a session asks only afterwards, if none has opened: an e-stop must not wait.
+Each check loads cryptography, so whoever opens a session asks only afterwards, if none has opened: an e-stop must not
+wait. The module itself loads none: a bus for this machine alone has no key.
 """
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
-
-from cryptography import x509
-from cryptography.exceptions import InvalidSignature
-from cryptography.hazmat.primitives.serialization import load_pem_private_key
+from typing import TYPE_CHECKING
 
 from tailor.runtime.bus.rights.credentials import AUTHORITY, CERTIFICATE, PRIVATE_KEY, Identity
 from tailor.schemas.errors import UsageError
+
+if TYPE_CHECKING:
+    from cryptography import x509
 
 MADE = "expected the files that `tailor keys new` made together"
 
@@ -24,6 +25,9 @@ def check_files(identity: Identity) -> None:
     Raises:
       UsageError: No session ever opens with them.
     """
+    from cryptography.exceptions import InvalidSignature
+    from cryptography.hazmat.primitives.serialization import load_pem_private_key
+
     authority, certificate = (_certificate(identity.folder / name) for name in (AUTHORITY, CERTIFICATE))
     path = identity.folder / PRIVATE_KEY
     try:
@@ -52,6 +56,8 @@ def out_of_date(identity: Identity, now: datetime | None = None) -> str:
 
 
 def _certificate(path: Path) -> x509.Certificate:
+    from cryptography import x509
+
     try:
         return x509.load_pem_x509_certificate(_read(path))
     except ValueError as error:

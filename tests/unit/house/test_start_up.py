@@ -18,13 +18,25 @@ WITHOUT = {
     "why": {*HEAVY, "zenoh"},
     "replay": {*HEAVY, "onnxruntime", "executive"},
     "record": {*HEAVY, "onnxruntime", "executive"},
-    "bus": {*HEAVY, "onnxruntime", "executive"},
-    "estop": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags", "rich", "mcap", "asyncio", "robots"},
+    "bus": {*HEAVY, "onnxruntime", "executive", "cryptography"},
+    "gateway": {*HEAVY, "onnxruntime", "executive", "cryptography"},
+    "estop": {
+        *HEAVY,
+        "onnxruntime",
+        "executive",
+        "numpy",
+        "rosbags",
+        "rich",
+        "mcap",
+        "asyncio",
+        "robots",
+        "cryptography",
+    },
     "arm": {*HEAVY, "onnxruntime", "executive"},
     "status": {*HEAVY, "onnxruntime", "executive"},
     "goal": {*HEAVY, "onnxruntime", "executive", "numpy", "rosbags"},
     "sim": {*HEAVY, "onnxruntime"},
-    "up": {*HEAVY, "onnxruntime"},
+    "up": {*HEAVY, "onnxruntime", "cryptography"},
 }
 
 
