@@ -60,8 +60,8 @@ def size_limits() -> list[dict[str, Any]]:
         {"messages": ["put"], "key_exprs": _keys(t for t in TOPICS.values() if t.max_bytes == size), "size_limit": size}
         for size in sizes
     ]
-    action = {"key_exprs": action_topic_keys(SERVICES.values()), "size_limit": MAX_TOPIC_BYTES}
-    limits.append({"messages": ["put"], **action})
+    action = action_topic_keys(SERVICES.values())
+    limits.append({"messages": ["put"], "key_exprs": action, "size_limit": MAX_TOPIC_BYTES})
     requests = {"messages": ["query"], "key_exprs": ["**"], "size_limit": MAX_REQUEST_BYTES}
     return [{"flows": ["ingress"], **limit} for limit in (*limits, requests)]
 

@@ -17,6 +17,7 @@ from tailor.runtime.processes.restart import Restart
 from tailor.runtime.processes.supervised import STARTUP_NS, STOPPING_NS, ProcessSpec, State
 from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.stopping import SIGNALS, stop_on_signals
+from tests.support.injection.signals import heeded_signals
 from tests.support.patience import PATIENCE_S, first_line, gone, is_alive, wait_until
 
 S = 1_000_000_000
@@ -366,8 +367,7 @@ def test_children_are_stopped_in_reverse_order_and_one_that_ignores_it_is_killed
 
 def test_the_first_signal_only_requests_a_stop():
     for number in SIGNALS:
-        with handlers_kept():
-            signal.signal(number, signal.SIG_DFL)  # the tests may run under nohup
+        with heeded_signals():
             stop = stop_on_signals()
             assert not stop.requested
             os.kill(os.getpid(), number)

@@ -18,6 +18,7 @@ from tailor.tools.cli.termination import interrupted_by_sigterm
 from tailor.tools.parallel.pool import completed, in_order
 from tailor.tools.parallel.quiet_shutdown import quieten_shutdown
 from tests.support.bus_system import ROOT
+from tests.support.injection.signals import heeded_signals
 from tests.support.patience import PATIENCE_S
 
 WORKER = b"popen_loky"
@@ -43,14 +44,11 @@ def interrupted() -> int:
 
 
 def test_a_command_that_says_nothing_of_its_end_by_sigterm_ends_with_a_line(capsys) -> None:
-    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)  # other tests of this process may have left a handler
-    try:
+    with heeded_signals():  # other tests of this process may have left a handler
         assert interrupted_by_sigterm(interrupted, "tailor evaluate") == 143
         assert capsys.readouterr().err == "tailor evaluate: ended by SIGTERM\n"
         assert interrupted_by_sigterm(lambda: 1, "tailor evaluate") == 1
         assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def test_an_interrupt_is_for_the_process_that_waits() -> None:
