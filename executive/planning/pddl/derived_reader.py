@@ -10,8 +10,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
-from tailor.executive.planning.pddl.language import And, Definition, Domain, Equal, Formula, Or, Quantified, Typed
-from tailor.executive.planning.pddl.substitution import fresh, size, substituted
+from tailor.executive.planning.pddl.language import Definition, Domain, Formula, Or, Typed
+from tailor.executive.planning.pddl.substitution import narrowed, size, substituted
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, form_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
@@ -81,9 +81,7 @@ def _definition(name: str, rules: Sequence[Form], domain: Domain) -> Definition:
     """The definition by one or more rules."""
     declared = domain.predicates[name]
     alternatives = tuple(_alternative(rule, declared, domain) for rule in rules)
-    definition = Definition(
-        tuple(parameter.name for parameter in declared), alternatives[0] if len(rules) == 1 else Or(alternatives)
-    )
+    definition = Definition(declared, alternatives[0] if len(rules) == 1 else Or(alternatives))
     if size(definition.formula) > MAX_PARTS:
         raise rules[0].place.error(f"the definition of '{name}' has more than {MAX_PARTS} parts")
     return definition
@@ -97,16 +95,5 @@ def _alternative(rule: Form, declared: tuple[Typed, ...], domain: Domain) -> For
         plural = "" if len(declared) == 1 else "s"
         raise head.place.error(f"'{head.head}' expects {len(declared)} parameter{plural}, found {len(own)}")
     body = read_formula(rule.items[2], Scope.of(domain, ()).extended(own))
-    names = {mine.name: mine.name for mine in own}
-    for mine, parameter in zip(own, declared, strict=True):
-        if not all(any(domain.is_a(kind, other) for other in mine.types) for kind in parameter.types):
-            body = _narrowed(body, mine, names)
-    return substituted(body, dict(zip(names, (parameter.name for parameter in declared), strict=True)))
-
-
-def _narrowed(body: Formula, parameter: Typed, names: dict[str, str]) -> Formula:
-    """The condition, for a parameter of its narrower type only."""
-    inner = fresh(parameter.name, names)
-    equal = Equal(inner, parameter.name)
-    part = substituted(body, {**names, parameter.name: inner})
-    return Quantified(False, (Typed(inner, parameter.types),), And((equal, part)))
+    body = narrowed(body, own, (parameter.types for parameter in declared), domain)
+    return substituted(body, {mine.name: parameter.name for mine, parameter in zip(own, declared, strict=True)})

@@ -19,7 +19,7 @@ from tailor.executive.planning.pddl.language import (
     Typed,
     When,
 )
-from tailor.executive.planning.pddl.substitution import size, substituted
+from tailor.executive.planning.pddl.substitution import narrowed, size, substituted
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Place, form_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
@@ -124,10 +124,13 @@ def _defined(atom: Atom, form: Form, scope: Scope) -> Formula:
     definition = scope.domain.derived.get(atom.predicate)
     if definition is None:
         return atom
-    scope.parts["derived"] += size(definition.formula)
+    given = (scope.terms[term] for term in atom.terms)
+    formula = narrowed(definition.formula, definition.parameters, given, scope.domain)
+    scope.parts["derived"] += size(formula)
     if scope.parts["derived"] > MAX_PARTS:
         raise form.place.error(f"'{atom.predicate}' and other derived predicates take more than {MAX_PARTS} parts")
-    return substituted(definition.formula, dict(zip(definition.parameters, atom.terms, strict=True)))
+    names = (parameter.name for parameter in definition.parameters)
+    return substituted(formula, dict(zip(names, atom.terms, strict=True)))
 
 
 def read_atom(form: Form, scope: Scope) -> Atom:

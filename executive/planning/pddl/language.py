@@ -164,7 +164,7 @@ class Action:
 class Definition:
     """The formula by which a derived predicate holds, over its parameters; it names no derived predicate."""
 
-    parameters: tuple[str, ...]
+    parameters: tuple[Typed, ...]
     formula: Formula
 
 

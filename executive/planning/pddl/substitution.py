@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified
+from tailor.executive.planning.pddl.language import And, Atom, Domain, Equal, Formula, Not, Or, Quantified, Typed
 
 
 def substituted(formula: Formula, terms: Mapping[str, str]) -> Formula:
@@ -33,6 +33,26 @@ def substituted(formula: Formula, terms: Mapping[str, str]) -> Formula:
                 inner[variable.name] = fresh(variable.name, inner.values())
                 renamed.append(replace(variable, name=inner[variable.name]))
             return Quantified(every, tuple(renamed), substituted(part, inner))
+
+
+def narrowed(
+    formula: Formula, parameters: Sequence[Typed], given: Iterable[tuple[str, ...]], domain: Domain
+) -> Formula:
+    """The formula over parameters, false for objects that are of no type of their parameter.
+
+    Args:
+      formula: Its free variables are the parameters.
+      parameters: Variables with their types.
+      given: For each parameter the types of what takes its place; where all are among its own, nothing is tested.
+      domain: Domain with all types.
+    """
+    names = {parameter.name: parameter.name for parameter in parameters}
+    for parameter, types in zip(parameters, given, strict=True):
+        if not all(any(domain.is_a(kind, own) for own in parameter.types) for kind in types):
+            inner = fresh(parameter.name, names)
+            part = substituted(formula, {**names, parameter.name: inner})
+            formula = Quantified(False, (Typed(inner, parameter.types),), And((Equal(inner, parameter.name), part)))
+    return formula
 
 
 def fresh(name: str, taken: Iterable[str]) -> str:

@@ -76,6 +76,15 @@ def test_a_rule_of_a_type_does_not_hold_for_objects_of_another():
         assert solve(domain, problem, MATCHING).status == status
 
 
+@pytest.mark.parametrize(("objects", "status"), [("u - block", "unsolvable"), ("u - table", "solved")])
+def test_a_predicate_of_a_type_does_not_hold_for_objects_of_another(objects, status):
+    types = "(:types block table - thing)"
+    text = f"(define (domain d) {types} (:predicates (ok ?x - block) (done)) (:derived (ok ?b) (= ?b ?b))"
+    domain = parse_domain(f"{text} (:action a :parameters (?x - thing) :precondition (not (ok ?x)) :effect (done)))")
+    problem = f"(define (problem p) (:domain d) (:objects {objects}) (:init) (:goal (done)))"
+    assert solve(domain, parse_problem(problem, domain), MATCHING).status == status
+
+
 def test_free_variables_without_a_term_stay():
     condition = formula("", "(exists (?z) (r ?x ?z))")
     assert substituted(condition, {}) == condition
