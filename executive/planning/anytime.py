@@ -15,7 +15,7 @@ from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plan_quality import Measure, measure_of, quality
 from tailor.executive.planning.plans.plan import Result
 from tailor.executive.planning.search import GroundCache, Search, plan_space
-from tailor.executive.planning.settings import DEFAULT, DEFAULT_RANKINGS, MAKESPAN_RANKINGS, Settings
+from tailor.executive.planning.settings import DEFAULT, DEFAULT_RANKINGS, Settings, rankings_for
 from tailor.executive.planning.structures.orderings import GOAL
 from tailor.executive.planning.structures.random_source import RandomSource
 from tailor.executive.planning.structures.refinable import Refinable
@@ -88,7 +88,7 @@ class AnytimeSearch:
 
     def _improvements(self) -> Iterator[Result | None]:
         """Better and better plans; sets `ended` before the last yield."""
-        settings = replace(self._settings, rankings=self._rankings(), search="A")
+        settings = replace(self._settings, rankings=rankings_for(self._settings, self.measure), search="A")
         if self.measure == "cost":
             settings = replace(settings, action_cost="metric")
         grounded = self._cache.last
@@ -113,11 +113,6 @@ class AnytimeSearch:
                 yield self.best
             else:
                 yield None
-
-    def _rankings(self) -> tuple[str, ...]:
-        if self._settings.rankings:
-            return self._settings.rankings
-        return MAKESPAN_RANKINGS if self.measure == "makespan" else DEFAULT_RANKINGS
 
 
 class _Bound:

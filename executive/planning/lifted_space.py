@@ -6,60 +6,42 @@ import itertools
 from collections.abc import Iterator
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.flaws.flaw_orders import parse_flaw_order
-from tailor.executive.planning.flaws.flaw_selection import FlawSelection
-from tailor.executive.planning.flaws.ranking import Ranking
 from tailor.executive.planning.ground_plans.extraction import Frame, scheduled
 from tailor.executive.planning.ground_plans.separation import UnsettledError, makespan
 from tailor.executive.planning.lifted.bindings import Bindings
 from tailor.executive.planning.lifted.formula import LiftedLiteral
-from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, initial_plan
+from tailor.executive.planning.lifted.lifted_plan import LiftedCondition, LiftedPlan, LiftedThreat, initial_plan
 from tailor.executive.planning.lifted.measures import LiftedMeasures
 from tailor.executive.planning.lifted.open_conditions import refine_condition
 from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
-from tailor.executive.planning.plan_quality import measure_of
+from tailor.executive.planning.plan_space import PlanSpace
 from tailor.executive.planning.plans.plan import Link, Plan
-from tailor.executive.planning.results import search_gap
-from tailor.executive.planning.settings import Settings, rankings_for
+from tailor.executive.planning.settings import Settings
 from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
 
 MAX_COMPLETIONS = 10  # tried for a schedule; nearly always the first one has one
 
 
-class LiftedSpace:
+class LiftedSpace(PlanSpace[LiftedPlan]):
     """See `PlanSpace`."""
 
     def __init__(self, task: LiftedTask, settings: Settings, rng: RandomSource) -> None:
         measures = LiftedMeasures(task)
+        super().__init__(task.ground, settings, measures, measures, rng)
         self._task = task
-        self._unsettled = False  # whether a plan was dropped that may have a schedule,
-        self._unshortened = False  # or was given one that may not be its shortest
-        self._ranking = Ranking(rankings_for(settings, task.ground.problem.metric), measures, settings.weight)
-        self._orders = [FlawSelection(parse_flaw_order(order.text), measures, rng) for order in settings.flaw_orders]
-        self.rank = self._ranking.rank
 
     def initial(self) -> LiftedPlan:
-        """See `PlanSpace`: the goal as open conditions."""
+        """See `PlanSpace`."""
         return initial_plan(self._task)
 
     def is_complete(self, plan: LiftedPlan) -> bool:
-        """See `PlanSpace`: whether there is an object for every variable, and a schedule without interference."""
+        """See `PlanSpace`; there must be an object for every variable, too."""
         return self._completion(plan) is not None
 
-    def gap(self) -> str:
-        """See `PlanSpace`."""
-        ground = self._task.ground
-        unshortened = self._unshortened and measure_of(ground.problem) == "makespan"
-        return search_gap(ground.has_alternatives_over_all(), self._unsettled, unshortened)
-
-    def refine(self, plan: LiftedPlan, order: int) -> list[LiftedPlan]:
-        """See `PlanSpace`; a plan without flaws whose bindings cannot be completed has no refinements."""
-        if plan.open is None and plan.threats is None:
-            return []
-        flaw = self._orders[order].select(plan)
+    def _resolvers(self, plan: LiftedPlan, flaw: LiftedCondition | LiftedThreat) -> list[LiftedPlan]:
         if isinstance(flaw, LiftedCondition):
             return refine_condition(self._task, plan, flaw)
         return refine_threat(self._task, plan, flaw)
@@ -70,20 +52,20 @@ class LiftedSpace:
         assert completion is not None
         bindings, orderings = completion
         names = _names(plan, bindings)
-        frame = Frame(names, orderings, task.first_node, task.moments, task.ground.grid)
+        frame = Frame(names, orderings, task.first_node, task.moments, self._ground.grid)
         order = {step.id: n for n, step in enumerate(frame.steps())}
         links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
-        return frame.plan(task.ground.problem, links, plan.bindings.lines())
+        return frame.plan(self._ground.problem, links, plan.bindings.lines())
 
     def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:
         """Objects for all variables and a schedule with them, of several the shortest; None if there are none."""
-        task, world = self._task.ground, self._task.world
+        world = self._task.world
         found: tuple[Bindings, Orderings] | None = None
         all_shortest = True
         completions = plan.bindings.completions()
         for bindings in itertools.islice(completions, MAX_COMPLETIONS):
             try:
-                schedule = scheduled(plan.orderings, _names(plan, bindings), task, world)
+                schedule = scheduled(plan.orderings, _names(plan, bindings), self._ground, world)
             except UnsettledError:
                 self._unsettled = True
                 continue

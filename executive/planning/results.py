@@ -4,19 +4,6 @@ from __future__ import annotations
 
 from tailor.executive.planning.plans.plan import Result
 
-KEEPS_TO_ONE = "the search is exhausted, but of a condition over all with alternatives it keeps to one throughout"
-UNSETTLED = "the search is exhausted, but for some plan it gave up to look for a schedule without interference"
-UNSHORTENED = "the search is exhausted, but some plan may have a shorter schedule"
-
-
-def search_gap(keeps_to_one: bool, unsettled: bool, unshortened: bool) -> str:
-    """Why an empty search space is no proof; "" if it is one."""
-    if keeps_to_one:
-        return KEEPS_TO_ONE
-    if unsettled:
-        return UNSETTLED
-    return UNSHORTENED if unshortened else ""
-
 
 def goal_unreachable() -> Result:
     """Proof without a search: the relaxed planning graph does not reach the goal."""
