@@ -137,8 +137,7 @@ class _Bound:
             case "cost":
                 return plan.cost >= self._limit
             case "makespan":
-                latest = plan.orderings.earliest()[GOAL]
-                return (latest if self._task.temporal else latest - 1) >= self._limit
+                return plan.orderings.earliest()[GOAL] >= self._limit
             case _:
                 return len(plan.steps) >= self._limit
 

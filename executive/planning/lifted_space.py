@@ -19,6 +19,7 @@ from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plan_space import PlanSpace
 from tailor.executive.planning.plans.plan import Link, Plan
 from tailor.executive.planning.settings import Settings
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.random_source import RandomSource
 
@@ -81,11 +82,9 @@ class LiftedSpace(PlanSpace[LiftedPlan]):
         return found
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
-        cell = plan.links
-        while cell is not None:
+        for cell in cells_of(plan.links):
             producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
             yield Link(producer, _ground(cell.literal, bindings), consumer)
-            cell = cell.rest
 
 
 def _names(plan: LiftedPlan, bindings: Bindings) -> tuple[Fact, ...]:

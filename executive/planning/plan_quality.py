@@ -41,12 +41,10 @@ def total_cost(plan: Plan, problem: Problem) -> float:
     Returns:
       The exact sum as the nearest float (infinite beyond all), without an initial value of (total-cost).
     """
-    schemata = {action.name: action for action in problem.domain.actions}
     total = Fraction(0)
     for step in plan.steps:
-        action = schemata[step.action[0]]
+        action, binding = problem.domain.bound(step.action)
         if action.cost is not None:
-            binding = {p.name: name for p, name in zip(action.parameters, step.action[1:], strict=True)}
             total += evaluated(action.cost, binding, problem.values)
     try:
         return float(total)

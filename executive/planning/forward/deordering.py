@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask, bits_of
+from tailor.executive.planning.forward.strips_task import StripsAction, StripsTask
+from tailor.executive.planning.plans.schedule import bits_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from tailor.executive.planning.forward.strips_task import StripsAction
 from tailor.executive.planning.ground.ground_formula import StaticWorld
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
-from tailor.executive.planning.pddl.language import And, Literal
+from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 
 
@@ -21,7 +21,7 @@ def finished_plan(sequence: Sequence[StripsAction], order: Deordered, task: Grou
     steps.sort(key=lambda step: (step.start, -step.id))
     supports = _supports(order, len(names), task)
     links = [link for step in steps for link in _links(step.id, _static_of(step.action, world), supports)]
-    links += _links(GOAL, static_literals(task.problem.goal, {}, world), supports)
+    links += _links(GOAL, static_literals([task.problem.goal], {}, world), supports)
     orderings = tuple((i + 1, j + 1) for i, j in order.pairs())
     return Plan(task.problem.name, task.problem.initial, tuple(steps), tuple(links), orderings, tick_s=task.grid.unit_s)
 
@@ -43,6 +43,5 @@ def _links(consumer: int, static: Sequence[Literal], supports: dict[int, list[Li
 
 
 def _static_of(action: Fact, world: StaticWorld) -> tuple[Literal, ...]:
-    schema = next(schema for schema in world.domain.actions if schema.name == action[0])
-    binding = {p.name: name for p, name in zip(schema.parameters, action[1:], strict=True)}
-    return static_literals(And(tuple(condition.formula for condition in schema.conditions)), binding, world)
+    schema, binding = world.domain.bound(action)
+    return static_literals((condition.formula for condition in schema.conditions), binding, world)

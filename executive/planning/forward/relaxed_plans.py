@@ -11,7 +11,8 @@ import heapq
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tailor.executive.planning.forward.strips_task import StripsTask, bits_of
+from tailor.executive.planning.forward.strips_task import StripsTask
+from tailor.executive.planning.plans.schedule import bits_of
 
 UNREACHED = 1 << 60  # cost of a literal
 MOST = 1 << 50  # cost of a reached one: a chain of n actions with two conditions each costs 2 ** n

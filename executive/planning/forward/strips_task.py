@@ -72,11 +72,6 @@ def mask_of(literals: Iterable[int]) -> int:
     return mask
 
 
-def bits_of(mask: int) -> list[int]:
-    """The literals, or positions, of a mask."""
-    return [number for number, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
-
-
 def _strips_action(action: GroundAction) -> StripsAction:
     if not action.simple:
         raise NotClassical(f"conditional effects of {action}")

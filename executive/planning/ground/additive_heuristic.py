@@ -70,11 +70,16 @@ def sum_of(parts: Iterable[Value]) -> Value:
     return Value(cost, work, makespan)
 
 
-def action_costs(actions: Sequence[GroundAction], kind: str) -> tuple[float, ...]:
-    """The cost of each action: 1, its duration in seconds, that relative to the shortest one, or the metric's."""
+def action_costs(actions: Sequence[tuple[float, float]], kind: str) -> tuple[float, ...]:
+    """The cost of each action: 1, its duration in seconds, that relative to the shortest one, or the metric's.
+
+    Args:
+      actions: Of each the metric's cost, and its shortest duration in seconds.
+      kind: See `Settings.action_cost`.
+    """
     if kind == "metric":
-        return tuple(action.cost for action in actions)
-    durations = [action.duration_s or 1.0 for action in actions]
+        return tuple(cost for cost, _ in actions)
+    durations = [duration_s or 1.0 for _, duration_s in actions]
     if kind == "unit" or not durations:
         return (1,) * len(durations)
     unit = min(durations) if kind == "relative" else 1.0

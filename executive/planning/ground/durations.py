@@ -115,13 +115,17 @@ def _operate(operator: str, a: Fraction | None, b: Fraction | None) -> Fraction 
             return a / b if b else None
 
 
+def arithmetic_of(action: Action) -> list[Numeric]:
+    """The expressions in an action's duration and cost."""
+    return [*(bound.value for bound in action.duration or ()), *([] if action.cost is None else [action.cost])]
+
+
 def numeric_steps(action: Action) -> int:
     """Steps of grounding that the arithmetic of an action's duration and cost takes for one binding; 0 if it is short.
 
     A number takes as long as two formulas.
     """
-    values = [*(bound.value for bound in action.duration or ()), *([action.cost] if action.cost is not None else [])]
-    return 2 * max(sum(map(numbers_in, values)) - FREE_NUMBERS, 0)
+    return 2 * max(sum(map(numbers_in, arithmetic_of(action))) - FREE_NUMBERS, 0)
 
 
 def duration_range(

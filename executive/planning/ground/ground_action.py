@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.structures.connectives import conjunction
 
 Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end
 MOMENTS: dict[str, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}
@@ -49,6 +50,14 @@ class GroundAction:
 
     def __str__(self) -> str:
         return f"({' '.join(self.name)})"
+
+
+def by_span(conditions: Iterable[tuple[GroundCondition, Span]]) -> dict[Span, GroundCondition]:
+    """The conjunction of the conditions of each span."""
+    spans: dict[Span, list[GroundCondition]] = {}
+    for condition, span in conditions:
+        spans.setdefault(span, []).append(condition)
+    return {span: conjunction(own) for span, own in spans.items()}
 
 
 def external_conditions(

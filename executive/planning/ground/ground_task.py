@@ -77,7 +77,7 @@ def make_task(problem: Problem, grounded: GroundActions, cost: CostOf = "unit") 
     if large:
         yield
     temporal = problem.domain.durative or bool(timed)
-    costs = action_costs(grounded.actions, cost)
+    costs = action_costs([(action.cost, action.duration_s) for action in grounded.actions], cost)
     first = initial | {literal for literal, _ in timed}
     estimates = yield from estimate(grounded.actions, costs, first, 2 * len(facts))
     achievers = yield from achievers_of(grounded.actions, estimates, 2 * len(facts))

@@ -14,6 +14,7 @@ from tailor.executive.planning.ground.ground_action import (
     GroundAction,
     GroundEffect,
     Span,
+    by_span,
     external_conditions,
 )
 from tailor.executive.planning.ground.ground_formula import (
@@ -28,7 +29,7 @@ from tailor.executive.planning.ground.ground_formula import (
 )
 from tailor.executive.planning.pddl.formula_text import format_atom, format_number
 from tailor.executive.planning.pddl.language import Action, Condition, When
-from tailor.executive.planning.structures.connectives import FALSE, conjunction, conjuncts
+from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 
 Conditions: TypeAlias = tuple[tuple[GroundCondition, Span], ...]
 C = TypeVar("C")  # a condition, ground or lifted
@@ -175,10 +176,7 @@ def _failures(addition: GroundEffect) -> list[Conditions]:
 
     One with conditions at several moments fails if those of one moment fail: one way for each.
     """
-    spans: dict[Span, list[GroundCondition]] = {}
-    for condition, span in addition.conditions:
-        spans.setdefault(span, []).append(condition)
-    failures = [(negation(conjunction(own)), span) for span, own in spans.items()]
+    failures = [(negation(own), span) for span, own in by_span(addition.conditions).items()]
     return [tuple((part, span) for part in conjuncts(fails)) for fails, span in failures if fails != FALSE]
 
 

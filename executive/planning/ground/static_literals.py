@@ -1,16 +1,18 @@
-"""The static literals of a formula: grounding removes them, a finished plan links them."""
+"""The static literals of conditions: grounding removes them, a finished plan links them."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.pddl.language import And, Atom, Formula, Literal, Not
 
 
-def static_literals(formula: Formula, binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
-    """The static literals that a formula implies, disjunctions ignored; the last one first."""
+def static_literals(formulas: Iterable[Formula], binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
+    """The static literals that formulas imply, disjunctions ignored; the last one first."""
     literals: list[Literal] = []
-    pending = [formula]
+    pending = list(formulas)
     while pending:
         part = pending.pop()
         inner, positive = (part.part, False) if isinstance(part, Not) else (part, True)

@@ -81,8 +81,7 @@ def _literal(timed: TimedLiteral) -> Event:
 
 def _both_ends(name: Fact, node: int, world: StaticWorld) -> tuple[_Moments, _Moments]:
     """The start, at that node, and the end of an action; all of one without duration belongs to its start."""
-    schema = next(action for action in world.domain.actions if action.name == name[0])
-    binding = {p.name: argument for p, argument in zip(schema.parameters, name[1:], strict=True)}
+    schema, binding = world.domain.bound(name)
     start, end = (("start", "end"), ()) if schema.duration is None else (("start",), ("end",))
     return _Moments(schema, binding, start, node, node), _Moments(schema, binding, end, node + 1, node)
 

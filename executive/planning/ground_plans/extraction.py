@@ -13,10 +13,11 @@ from tailor.executive.planning.ground.static_literals import static_literals
 from tailor.executive.planning.ground_plans.events import events_of
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.ground_plans.separation import Schedule, separated
-from tailor.executive.planning.pddl.language import Action, And, Literal
+from tailor.executive.planning.pddl.language import Action, Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.orderings import Orderings
 from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
@@ -115,23 +116,18 @@ def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
 def _links(plan: PartialPlan, task: GroundTask, world: StaticWorld, steps: tuple[Step, ...]) -> Iterator[Link]:
     """Links by consumer; links from static facts, which grounding removes, are added as the newest."""
     links_by_consumer: dict[int, list[Link]] = {}
-    cell = plan.links
-    while cell is not None:
+    for cell in cells_of(plan.links):
         link = Link(task.step_of(cell.producer), task.names[cell.literal], task.step_of(cell.first))
         if link not in links_by_consumer.setdefault(link.consumer, []):
             links_by_consumer[link.consumer].append(link)
-        cell = cell.rest
-    schemata = {action.name: action for action in world.domain.actions}
     for step in steps:
-        schema = schemata[step.action[0]]
-        binding = {p.name: name for p, name in zip(schema.parameters, step.action[1:], strict=True)}
-        formulas = [condition.formula for condition in schema.conditions]
+        schema, binding = world.domain.bound(step.action)
         achieved = (link.literal for links in links_by_consumer.values() for link in links if link.producer == step.id)
-        static = dict.fromkeys(static_literals(And(tuple(formulas)), binding, world))
+        static = dict.fromkeys(static_literals((condition.formula for condition in schema.conditions), binding, world))
         static.update(dict.fromkeys(x for literal in achieved for x in _static_guard(schema, binding, literal, world)))
         yield from (Link(0, literal, step.id) for literal in static)
         yield from links_by_consumer.get(step.id, ())
-    yield from (Link(0, literal, GOAL) for literal in static_literals(task.problem.goal, {}, world))
+    yield from (Link(0, literal, GOAL) for literal in static_literals([task.problem.goal], {}, world))
     yield from links_by_consumer.get(GOAL, ())
 
 
@@ -139,10 +135,10 @@ def _static_guard(schema: Action, binding: Binding, achieved: Literal, world: St
     """The static conditions of the conditional effect that achieves a literal."""
     for effect in schema.effects:
         if (effect.atom.predicate, effect.positive) == (achieved.fact[0], achieved.positive):
-            formula = And(tuple(condition.formula for condition in effect.condition))
+            formulas = [condition.formula for condition in effect.condition]
             for inner in bindings(effect.variables, binding, world):
                 fact: Fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
-                static = static_literals(formula, inner, world)
+                static = static_literals(formulas, inner, world)
                 if fact == achieved.fact and all((x.fact in world.facts) == x.positive for x in static):
                     return static
     return ()

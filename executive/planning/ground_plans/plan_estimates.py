@@ -5,6 +5,7 @@ from __future__ import annotations
 from tailor.executive.planning.flaws.ranking import Estimate
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.makespan import makespan_estimate
 
 
@@ -19,12 +20,10 @@ class GroundEstimates:
         """See `PlanEstimates`."""
         cost: float = 0
         work: float = 0
-        cell = plan.open
-        while cell is not None:
+        for cell in cells_of(plan.open):
             value = self._task.estimates.of(cell.condition)
             cost += value.cost
             work += value.work
-            cell = cell.rest
         return cost, work
 
     def reusing(self, plan: PartialPlan) -> Estimate:
@@ -59,9 +58,5 @@ class GroundEstimates:
 
     def makespan(self, plan: PartialPlan) -> float:
         """See `PlanEstimates`."""
-        conditions = []
-        cell = plan.open
-        while cell is not None:
-            conditions.append((cell.first, self._task.estimates.of(cell.condition).makespan))
-            cell = cell.rest
+        conditions = [(cell.first, self._task.estimates.of(cell.condition).makespan) for cell in cells_of(plan.open)]
         return makespan_estimate(plan.orderings, conditions)

@@ -9,6 +9,7 @@ from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import Link, Threat, new
+from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.orderings import Orderings
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
@@ -19,11 +20,7 @@ _ALWAYS: tuple[Spanned, ...] = ((),)  # one effect without conditions
 
 def guarded_links(link: Link | None) -> Guarded:
     """Links, newest first, each with the literal that undoes it."""
-    guarded = []
-    while link is not None:
-        guarded.append((link.literal ^ 1, link))
-        link = link.rest
-    return guarded
+    return [(each.literal ^ 1, each) for each in cells_of(link)]
 
 
 class LinksByLiteral:

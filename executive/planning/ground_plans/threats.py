@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from tailor.executive.planning.ground.ground_action import Span
-from tailor.executive.planning.ground.ground_formula import GroundCondition, negation
+from tailor.executive.planning.ground.ground_action import by_span
+from tailor.executive.planning.ground.ground_formula import negation
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat, new
-from tailor.executive.planning.structures.connectives import conjunction
 from tailor.executive.planning.structures.linked_list import without
 
 
@@ -23,7 +22,7 @@ def count_refinements(plan: PartialPlan, threat: Threat) -> int:
         return 0
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1
-    return promotion + demotion + (len(_by_span(threat)) if conditions else 0)
+    return promotion + demotion + (len(by_span(conditions)) if conditions else 0)
 
 
 def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
@@ -48,14 +47,7 @@ def separations(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[Par
     first = task.first_node
     start = first + (threat.node - first) // task.moments * task.moments
     children = []
-    for (begin, end), condition in _by_span(threat).items():
+    for (begin, end), condition in by_span(threat.conditions).items():
         cell = OpenCondition(negation(condition), start + begin, start + end, plan.open)
         children.append(plan._replace(open=cell, open_count=plan.open_count + 1))
     return children
-
-
-def _by_span(threat: Threat) -> dict[Span, GroundCondition]:
-    spans: dict[Span, list[GroundCondition]] = {}
-    for condition, span in threat.conditions:
-        spans.setdefault(span, []).append(condition)
-    return {span: conjunction(conditions) for span, conditions in spans.items()}

@@ -89,8 +89,8 @@ class LiftedMeasures:
     # --- rankings --------------------------------------------------------------------------------
     def plain(self, plan: LiftedPlan) -> Estimate:
         """See `PlanEstimates`."""
-        values = [self.value(plan, condition) for condition in cells_of(plan.open)]
-        return sum(value.cost for value in values), sum(value.work for value in values)
+        total = sum_of(self.value(plan, condition) for condition in cells_of(plan.open))
+        return total.cost, total.work
 
     def reusing(self, plan: LiftedPlan) -> Estimate:
         """See `PlanEstimates`."""

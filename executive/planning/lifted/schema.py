@@ -7,7 +7,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from tailor.executive.planning.ground.durations import TimeGrid, duration_range, evaluate, numeric_steps, range_ns
+from tailor.executive.planning.ground.durations import (
+    TimeGrid,
+    arithmetic_of,
+    duration_range,
+    evaluate,
+    numeric_steps,
+    range_ns,
+)
 from tailor.executive.planning.ground.ground_action import Span
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
 from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
@@ -110,8 +117,7 @@ def _choices(
     if action.duration is None and action.cost is None:
         yield {}, (zero, zero), zero
         return
-    numbers = [*(bound.value for bound in action.duration or ()), *([] if action.cost is None else [action.cost])]
-    relevant = {term for number in numbers for term in _terms(number)}
+    relevant = {term for number in arithmetic_of(action) for term in _terms(number)}
     parameters = tuple(p for p in action.parameters if p.name in relevant)
     for fixed in lifter.choices(parameters, {}, 1 + numeric_steps(action)):
         durations = (zero, zero) if action.duration is None else duration_range(action.duration, fixed, world)

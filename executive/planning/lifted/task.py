@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.additive_heuristic import NOTHING, PORTION, UNREACHABLE, Value
+from tailor.executive.planning.ground.additive_heuristic import NOTHING, PORTION, UNREACHABLE, Value, action_costs
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld, TooMuchToGround
 from tailor.executive.planning.ground.ground_task import CostOf, GroundTask
 from tailor.executive.planning.lifted.effects import LiftedEffect
@@ -148,7 +148,7 @@ def lifted_task(
         tuple(lifter.variables),
         tuple(PlacedEffect(FIRST + n, 0, literal, LiftedEffect(literal, 0)) for n, literal in enumerate(literals)),
         _achievers(schemas),
-        _costs(schemas, cost),
+        dict(zip(schemas, action_costs([(each.cost, each.duration_s) for each in schemas], cost), strict=True)),
         by_argument,
         {(n.fact[0], n.positive, n.fact[1:]): v for n, v in zip(ground.names, ground.estimates.values, strict=True)},
     )
@@ -183,14 +183,3 @@ def _achievers(schemas: tuple[Schema, ...]) -> dict[tuple[str, bool], tuple[Achi
         for effect in schema.effects:
             matches.setdefault((effect.literal.predicate, effect.literal.positive), []).append((schema, effect))
     return {key: tuple(own) for key, own in matches.items()}
-
-
-def _costs(schemas: tuple[Schema, ...], kind: CostOf) -> dict[Schema, float]:
-    """The cost of each schema: 1, its duration in seconds, that relative to the shortest, or the metric's."""
-    if kind == "metric":
-        return {schema: schema.cost for schema in schemas}
-    durations = {schema: schema.duration_s or 1.0 for schema in schemas}
-    if kind == "unit" or not durations:
-        return dict.fromkeys(durations, 1.0)
-    unit = min(durations.values()) if kind == "relative" else 1.0
-    return {schema: duration / unit for schema, duration in durations.items()}

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_text import format_atom
-from tailor.executive.planning.pddl.language import Action, Effect, Literal
+from tailor.executive.planning.pddl.language import Action, Literal
 from tailor.executive.planning.plans.plan import Plan, Step
 from tailor.executive.planning.plans.portions import completed_work
-from tailor.executive.planning.semantics.action_effects import affected
+from tailor.executive.planning.semantics.action_effects import affected, state_after
 from tailor.executive.planning.semantics.regression import NotClassical, conjunction
 from tailor.executive.planning.semantics.state import Binding, Objects, State, holds
 
@@ -31,12 +31,8 @@ class GroundStep:
         return all(holds(condition.formula, self.binding, state, objects) for condition in self.action.conditions)
 
     def applied(self, state: State, objects: Objects) -> State:
-        """The state after the step; its add effects win over its delete effects."""
-        added: set[Fact] = set()
-        removed: set[Fact] = set()
-        for effect in self.action.effects:
-            (added if effect.positive else removed).update(self._affected(effect, state, objects))
-        return (state - removed) | added
+        """The state after the step."""
+        return state_after(self.action, self.binding, state, objects)
 
     def conditions(self) -> list[Literal | None]:
         """The literals of the conditions, None for one that is false.
@@ -57,11 +53,9 @@ class GroundStep:
             raise NotClassical
         made: dict[Fact, bool] = {}
         for effect in sorted(self.action.effects, key=lambda effect: effect.positive):  # add effects win
-            made.update((fact, effect.positive) for fact in self._affected(effect, objects.initial, objects))
+            facts = completed_work(affected(effect, self.binding, objects.initial, objects))
+            made.update(dict.fromkeys(facts, effect.positive))
         return [Literal(fact, positive) for fact, positive in made.items()]
-
-    def _affected(self, effect: Effect, state: State, objects: Objects) -> list[Fact]:
-        return completed_work(affected(effect, self.binding, state, objects))
 
 
 def predecessors(plan: Plan) -> list[int] | None:

@@ -7,11 +7,12 @@ restores it that surely lies between both.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tailor.executive.planning.orders.ground_steps import GroundStep
 from tailor.executive.planning.pddl.language import Literal
+from tailor.executive.planning.plans.schedule import bits_of
 from tailor.executive.planning.semantics.regression import conjunction
 from tailor.executive.planning.semantics.state import Objects
 
@@ -54,11 +55,7 @@ class TruthCriterion:
         initially = (literal.fact in self.objects.initial) is literal.positive
         if not achievers and not initially:
             return "nothing makes it true before"
-        for n in _members(self.makers.get(Literal(literal.fact, not literal.positive), 0) & possible):
-            if not any(self.before[achiever] >> n & 1 for achiever in _members(achievers)):
+        for n in bits_of(self.makers.get(Literal(literal.fact, not literal.positive), 0) & possible):
+            if not any(self.before[achiever] >> n & 1 for achiever in bits_of(achievers)):
                 return f"{self.steps[n]} may undo it"
         return ""
-
-
-def _members(mask: int) -> Iterator[int]:
-    return (n for n in range(mask.bit_length()) if mask >> n & 1)

@@ -10,8 +10,9 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from tailor.executive.planning.pddl.formula_reader import Scope, read_formula
+from tailor.executive.planning.pddl.formula_size import parts_of
 from tailor.executive.planning.pddl.language import Definition, Domain, Formula, Or, Typed
-from tailor.executive.planning.pddl.substitution import narrowed, size, substituted
+from tailor.executive.planning.pddl.substitution import narrowed, substituted
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Word, form_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
@@ -82,7 +83,7 @@ def _definition(name: str, rules: Sequence[Form], domain: Domain) -> Definition:
     declared = domain.predicates[name]
     alternatives = tuple(_alternative(rule, declared, domain) for rule in rules)
     definition = Definition(declared, alternatives[0] if len(rules) == 1 else Or(alternatives))
-    if size(definition.formula) > MAX_PARTS:
+    if parts_of(definition.formula) > MAX_PARTS:
         raise rules[0].place.error(f"the definition of '{name}' has more than {MAX_PARTS} parts")
     return definition
 

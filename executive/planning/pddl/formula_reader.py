@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from tailor.executive.planning.pddl.formula_size import parts_of
 from tailor.executive.planning.pddl.language import (
     And,
     Atom,
@@ -19,7 +20,7 @@ from tailor.executive.planning.pddl.language import (
     Typed,
     When,
 )
-from tailor.executive.planning.pddl.substitution import narrowed, size, substituted
+from tailor.executive.planning.pddl.substitution import narrowed, substituted
 from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Place, form_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
@@ -126,7 +127,7 @@ def _defined(atom: Atom, form: Form, scope: Scope) -> Formula:
         return atom
     given = (scope.terms[term] for term in atom.terms)
     formula = narrowed(definition.formula, definition.parameters, given, scope.domain)
-    scope.parts["derived"] += size(formula)
+    scope.parts["derived"] += parts_of(formula)
     if scope.parts["derived"] > MAX_PARTS:
         raise form.place.error(f"'{atom.predicate}' and other derived predicates take more than {MAX_PARTS} parts")
     names = (parameter.name for parameter in definition.parameters)

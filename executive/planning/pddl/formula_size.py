@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sized
 
 from tailor.executive.planning.pddl.language import And, Formula, Not, Or, Quantified, Typed
 
 
-def parts_of(formula: Formula, choices: Callable[[Typed], Sized], most: int) -> int:
+def one_object(variable: Typed) -> Sized:
+    """Choices of `parts_of` with which it counts a formula as written."""
+    return (variable,)
+
+
+def parts_of(formula: Formula, choices: Callable[[Typed], Sized] = one_object, most: float = math.inf) -> int:
     """The number of atoms and connectives with all objects for the variables; beyond `most` some larger number.
 
     Args:

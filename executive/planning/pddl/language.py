@@ -191,6 +191,11 @@ class Domain:
         """Whether any action takes time."""
         return any(action.duration is not None for action in self.actions)
 
+    def bound(self, action: Fact) -> tuple[Action, dict[str, str]]:
+        """The schema of a ground action of the domain, and the objects of its parameters."""
+        schema = next(schema for schema in self.actions if schema.name == action[0])
+        return schema, {p.name: name for p, name in zip(schema.parameters, action[1:], strict=True)}
+
     def is_a(self, kind: str, ancestor: str) -> bool:
         """Whether every object of type `kind` is one of type `ancestor`."""
         return ancestor in self.ancestors[kind]

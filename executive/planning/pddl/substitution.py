@@ -61,14 +61,3 @@ def fresh(name: str, taken: Iterable[str]) -> str:
     while name in others:
         name += "'"
     return name
-
-
-def size(formula: Formula) -> int:
-    """The number of atoms, equalities and connectives."""
-    match formula:
-        case Not(part) | Quantified(_, _, part):
-            return 1 + size(part)
-        case And(parts) | Or(parts):
-            return 1 + sum(map(size, parts))
-        case _:
-            return 1

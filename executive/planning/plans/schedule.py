@@ -42,22 +42,22 @@ def scheduling(steps: Sequence[int], orderings: Iterable[Pair]) -> Work[tuple[di
         after[position[i]] |= 1 << position[j]
     level = [1.0] * len(steps)
     for i in range(len(steps)):
-        for j in _bits(after[i]):
+        for j in bits_of(after[i]):
             level[j] = max(level[j], level[i] + 1.0)
         yield
     for i in reversed(range(len(steps))):
-        for j in _bits(after[i]):
+        for j in bits_of(after[i]):
             after[i] |= after[j]
         yield
     pairs: list[Pair] = []
     for step in sorted(steps):
-        pairs += [(step, later) for later in sorted(steps[j] for j in _bits(after[position[step]]))]
+        pairs += [(step, later) for later in sorted(steps[j] for j in bits_of(after[position[step]]))]
         yield
     return {step: level[n] for step, n in position.items()}, tuple(pairs)
 
 
-def _bits(mask: int) -> Iterable[int]:
-    """The positions of the bits of a mask."""
+def bits_of(mask: int) -> list[int]:
+    """The positions of the bits of a mask, in order."""
     return [n for n, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
 
 

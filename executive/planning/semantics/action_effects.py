@@ -51,15 +51,16 @@ def apply_action(domain: Domain, problem: Problem, facts: frozenset[Fact], actio
     Returns:
       The facts after the action; add effects win over delete effects.
     """
-    name, *arguments = action
-    schema = next(schema for schema in domain.actions if schema.name == name)
-    binding = {parameter.name: label for parameter, label in zip(schema.parameters, arguments, strict=True)}
+    return state_after(*domain.bound(action), facts, Objects(problem))
+
+
+def state_after(action: Action, binding: Binding, state: State, objects: Objects) -> State:
+    """The state after an action as a whole; add effects win over delete effects."""
     added: set[Fact] = set()
     removed: set[Fact] = set()
-    for effect in schema.effects:
-        changed = completed_work(affected(effect, binding, facts, Objects(problem)))
-        (added if effect.positive else removed).update(changed)
-    return (facts - removed) | added
+    for effect in action.effects:
+        (added if effect.positive else removed).update(completed_work(affected(effect, binding, state, objects)))
+    return (state - removed) | added
 
 
 def affected(

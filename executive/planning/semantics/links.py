@@ -83,8 +83,7 @@ def orderings_for(plan: Plan, links: tuple[Link, ...], domain: Domain, objects: 
 
 def _undone(step: Step, domain: Domain, objects: Objects) -> Work[set[Literal]]:
     """The literals that a step may make false."""
-    action = next(action for action in domain.actions if action.name == step.action[0])
-    binding = {p.name: a for p, a in zip(action.parameters, step.action[1:], strict=True)}
+    action, binding = domain.bound(step.action)
     undone: set[Literal] = set()
     for effect in action.effects:
         for inner in objects.paced_bindings(effect.variables, binding):

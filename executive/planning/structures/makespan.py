@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tailor.executive.planning.structures.orderings import GOAL, INITIAL, Orderings
+from tailor.executive.planning.structures.orderings import GOAL, INITIAL, Closure, Orderings
 from tailor.executive.planning.structures.temporal_network import UNBOUNDED, TemporalNetwork
 
 
@@ -20,7 +20,8 @@ def makespan_estimate(orderings: Orderings, conditions: Iterable[tuple[int, floa
         earliest[node] = max(time, earliest.get(node, 0))
     if isinstance(orderings, TemporalNetwork):
         return _over_network(orderings, earliest)
-    return _over_levels(orderings.late, earliest)
+    assert isinstance(orderings, Closure)
+    return orderings.levels(earliest)[GOAL]
 
 
 def _over_network(network: TemporalNetwork, earliest: dict[int, float]) -> float:
@@ -32,12 +33,3 @@ def _over_network(network: TemporalNetwork, earliest: dict[int, float]) -> float
                 if other not in (INITIAL, GOAL) and bound < UNBOUNDED // 2:
                     makespan = max(makespan, time - bound)
     return makespan
-
-
-def _over_levels(late: tuple[int, ...], earliest: dict[int, float]) -> float:
-    """The longest chain of unit steps, each raised to the level that its open conditions require."""
-    levels: dict[int, float] = {}
-    for node in sorted(range(len(late)), key=lambda n: -late[n].bit_count()):
-        before = [level for other, level in levels.items() if late[other] >> node & 1]
-        levels[node] = max([earliest.get(node, 0), *before]) + (node not in (INITIAL, GOAL))
-    return levels[GOAL]

@@ -7,6 +7,7 @@ with such a mask; the temporal network keeps the same masks.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple, Protocol
 
 INITIAL = 0  # node of the initial state: before all others
@@ -60,7 +61,7 @@ class Orderings(Protocol):
         ...
 
     def earliest(self) -> tuple[float, ...]:
-        """The earliest time of each node: levels 1, 2, ... without durations, else ticks."""
+        """The earliest time of each node, the goal's is the makespan: levels without durations, else ticks."""
         ...
 
 
@@ -92,9 +93,14 @@ class Closure(NamedTuple):
         return tuple.__new__(Closure, (tuple([mask | after if mask & bit else mask for mask in late]),))
 
     def earliest(self) -> tuple[float, ...]:
-        """The longest chain of steps that ends in each node."""
-        levels: dict[int, int] = {}
+        """See `Orderings`: the longest chain of steps that ends in each node."""
+        levels = self.levels({})
+        return tuple(levels[node] for node in range(len(self.late)))
+
+    def levels(self, least: Mapping[int, float]) -> dict[int, float]:
+        """As `earliest`, each node raised to the level that is given for it."""
+        levels: dict[int, float] = {}
         for node in sorted(range(len(self.late)), key=lambda n: -self.late[n].bit_count()):
             before = [level for other, level in levels.items() if self.late[other] >> node & 1]
-            levels[node] = 1 + max(before, default=-1)  # the initial state comes first, at 0
-        return tuple(levels[node] for node in range(len(self.late)))
+            levels[node] = max([least.get(node, 0), *before]) + (node not in (INITIAL, GOAL))
+        return levels

@@ -14,7 +14,7 @@ import sys
 import time
 
 from tailor.executive.planning import Domain, Problem, Result, Unsupported, parse_domain, parse_problem, validate
-from tailor.runtime.planners.named import check_engine, kairos_command
+from tailor.runtime.planners.named import check_engine, kairos_command, kairos_installed
 from tailor.schemas.errors import UsageError
 from tailor.tools.plan_search.limits import MAX_PLANS, Limits
 from tailor.tools.plan_search.sources import GRACE_S, anytime, anytime_beside_kairos, built_in, external, with_kairos
@@ -105,8 +105,4 @@ def _plan(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, prob
 
 def _kairos_applies(domain: Domain) -> bool:
     """Whether the domain has durations and kairos-planner is installed."""
-    if all(action.duration is None for action in domain.actions):
-        return False
-    from tailor.runtime.planners.named import kairos_installed
-
-    return kairos_installed()
+    return domain.durative and kairos_installed()
