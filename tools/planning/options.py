@@ -57,72 +57,36 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
         help="flaw order, by name or as {n,s}LR; several in round robin (default MW-Loc, LCFR-Loc-Conf)")  # fmt: skip
     add("-l", "--limit", dest="orders", metavar="N", action=_LimitOrder,
         help="maximum number of plans of the preceding flaw order (of the search if none), or 'unlimited'")  # fmt: skip
-    add(
-        "-s",
-        "--search-algorithm",
-        dest="search",
-        choices=("A", "IDA"),
-        default="A",
-        type=lambda name: name.upper().removesuffix("*"),
-        help="A* (default) or IDA*",
-    )
+    add("-s", "--search-algorithm", dest="search", choices=("A", "IDA"), default="A",
+        type=lambda name: name.upper().removesuffix("*"), help="A* (default) or IDA*")  # fmt: skip
 
 
 def _configure_costs(group: argparse._ArgumentGroup) -> None:
     add = group.add_argument
-    add(
-        "-w",
-        "--weight",
-        type=float,
-        default=1.0,
-        help="weight of the heuristic against the cost of the steps (default 1)",
-    )
+    add("-w", "--weight", type=float, default=1.0,
+        help="weight of the heuristic against the cost of the steps (default 1)")  # fmt: skip
     costs = ("UNIT", "DURATION", "RELATIVE", "METRIC")
-    add(
-        "-a",
-        "--action-cost",
-        choices=costs,
-        default="UNIT",
-        type=str.upper,
-        help="cost of a step: 1, its duration, that relative to the shortest, or its (total-cost) (default UNIT)",
-    )
-    add(
-        "-t",
-        "--tolerance",
-        type=_tolerance,
-        default=0.01,
-        metavar="S",
-        help="tick of a durative plan in seconds (default 0.01); 'unlimited', as VHPOP 2 has it, is no time limit",
-    )
+    add("-a", "--action-cost", choices=costs, default="UNIT", type=str.upper,
+        help="cost of a step: 1, its duration, that relative to the shortest, or its (total-cost) "
+        "(default UNIT)")  # fmt: skip
+    add("-t", "--tolerance", type=_tolerance, default=0.01, metavar="S",
+        help="tick of a durative plan in seconds (default 0.01); 'unlimited', as VHPOP 2 has it, is no time "
+        "limit")  # fmt: skip
     add("-r", "--random-open-conditions", action="store_true", help="add open conditions in random order")
     add("-S", "--seed", type=int, default=0, help="random seed (default 0)")
-    add(
-        "-T",
-        "--time-limit",
-        type=_minutes,
-        default=None,
-        metavar="MINUTES",
-        help="time limit of the search in minutes, fractions allowed, or 'unlimited' (default)",
-    )
+    add("-T", "--time-limit", type=_minutes, default=None, metavar="MINUTES",
+        help="time limit of the search in minutes, fractions allowed, or 'unlimited' (default)")  # fmt: skip
     add("--memory-limit", type=_megabytes, default=512, metavar="MB",
         help="memory limit of the search, or 'unlimited' (default 512)")  # fmt: skip
 
 
 def _configure_planners(group: argparse._ArgumentGroup) -> None:
-    group.add_argument(
-        "--planner",
-        metavar="COMMAND",
+    group.add_argument("--planner", metavar="COMMAND",
         help="plan with an external program in its own process with time and memory limits, e.g. 'vhpop -g -f MW-Loc', "
-        "or with kairos, kairos:SECONDS, kairos:SECONDS:TICK, up:ENGINE (of unified-planning)",
-    )
-    group.add_argument(
-        "--compare",
-        metavar="COMMAND",
-        action="append",
-        default=[],
+        "or with kairos, kairos:SECONDS, kairos:SECONDS:TICK, up:ENGINE (of unified-planning)")  # fmt: skip
+    group.add_argument("--compare", metavar="COMMAND", action="append", default=[],
         help="print our plan's figures and validity beside those of another planner's, named as for --planner; "
-        "repeatable, each with the time limit of -T (default one minute)",
-    )
+        "repeatable, each with the time limit of -T (default one minute)")  # fmt: skip
 
 
 def _configure_output(group: argparse._ArgumentGroup) -> None:

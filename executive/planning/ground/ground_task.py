@@ -20,7 +20,8 @@ from tailor.executive.planning.ground.grounding import GroundActions
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.connectives import FALSE, Disjunction, conjuncts
-from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, GOAL_STEP, Closure, Orderings
+from tailor.executive.planning.structures.temporal_network import TemporalNetwork
 
 CostOf = OneOf["unit", "duration", "relative", "metric"]
 
@@ -42,6 +43,12 @@ class GroundTask:
     simple: bool  # no action has conditional effects
     first_node: int  # node of the first step, after the initial state, the goal and the timed literals
     moments: int  # nodes of a step: start and end, or only one if actions take no time
+
+    def initial_orderings(self) -> Orderings:
+        """Those of a plan without steps."""
+        if not self.temporal:
+            return Closure()
+        return TemporalNetwork.start(tuple(time for _, time in self.timed), self.grid.separation)
 
     def step_of(self, node: int) -> int:
         """The step that a node belongs to: 0 for the initial state and timed literals, GOAL_STEP for the goal."""

@@ -11,8 +11,7 @@ from tailor.executive.planning.ground.ground_action import GroundAction, Span
 from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.step_effects import StepEffects, no_masks
-from tailor.executive.planning.structures.orderings import FIRST, GOAL, Closure, Orderings
-from tailor.executive.planning.structures.temporal_network import TemporalNetwork
+from tailor.executive.planning.structures.orderings import FIRST, GOAL, Orderings
 
 new = tuple.__new__  # makes a named tuple from a plain one in half the time of its constructor
 
@@ -68,12 +67,9 @@ class PartialPlan(NamedTuple):
 def initial_plan(task: GroundTask) -> PartialPlan:
     """The plan without steps whose open conditions are the goal, the first at the head."""
     masks = no_masks(len(task.names))
-    orderings: Orderings = Closure()
-    if task.temporal:
-        orderings = TemporalNetwork.start(tuple(time for _, time in task.timed), task.grid.separation)
-        for number, (literal, _) in enumerate(task.timed):
-            masks[literal] |= 1 << FIRST + number
+    for number, (literal, _) in enumerate(task.timed):
+        masks[literal] |= 1 << FIRST + number
     cell: OpenCondition | None = None
     for condition in reversed(task.goal):
         cell = OpenCondition(condition, GOAL, GOAL, cell)
-    return PartialPlan((), orderings, StepEffects(masks), None, cell, None, len(task.goal), 0, 0)
+    return PartialPlan((), task.initial_orderings(), StepEffects(masks), None, cell, None, len(task.goal), 0, 0)

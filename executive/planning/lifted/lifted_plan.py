@@ -11,8 +11,7 @@ from tailor.executive.planning.lifted.formula import Equality, LiftedDisjunction
 from tailor.executive.planning.lifted.schema import Schema
 from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
 from tailor.executive.planning.structures.connectives import FALSE, Disjunction, conjuncts
-from tailor.executive.planning.structures.orderings import GOAL, GOAL_STEP, Closure, Orderings
-from tailor.executive.planning.structures.temporal_network import TemporalNetwork
+from tailor.executive.planning.structures.orderings import GOAL, GOAL_STEP, Orderings
 
 
 class LiftedLink(NamedTuple):
@@ -63,10 +62,9 @@ class LiftedPlan(NamedTuple):
 
 def initial_plan(task: LiftedTask) -> LiftedPlan:
     """The plan without steps whose open conditions are the goal, the first at the head."""
-    ticks = tuple(tick for _, tick in task.ground.timed)
-    orderings: Orderings = TemporalNetwork.start(ticks, task.ground.grid.separation) if task.moments == 2 else Closure()
     choices = {(v.name, GOAL_STEP): task.world.choices(v) for v in task.goal_variables}
-    empty = LiftedPlan((), orderings, Bindings().with_variables(choices), None, None, None, 0, 0, 0)
+    bindings = Bindings().with_variables(choices)
+    empty = LiftedPlan((), task.ground.initial_orderings(), bindings, None, None, None, 0, 0, 0)
     plan = opened(empty, of_step(task.goal, GOAL_STEP), GOAL, GOAL)
     return plan or empty._replace(open=LiftedCondition(FALSE, GOAL, GOAL, None), open_count=1)
 
@@ -96,19 +94,15 @@ def effects_of(task: LiftedTask, plan: LiftedPlan) -> Iterator[PlacedEffect]:
     yield from reversed(task.timed)
 
 
-def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
-    """Whether an effect unifies with a literal."""
+def unifying(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings, negated: bool = False) -> bool:
+    """Whether an effect unifies with a literal, or with its negation."""
     return (
         literal.predicate == effect.predicate
-        and literal.positive == effect.positive
+        and (literal.positive != effect.positive) == negated
         and bindings.may_unify(zip(effect.terms, literal.terms, strict=True))
     )
 
 
 def opposing(literal: LiftedLiteral, effect: LiftedLiteral, bindings: Bindings) -> bool:
     """Whether an effect unifies with the negation of a literal."""
-    return (
-        literal.predicate == effect.predicate
-        and literal.positive != effect.positive
-        and bindings.may_unify(zip(effect.terms, literal.terms, strict=True))
-    )
+    return unifying(literal, effect, bindings, negated=True)
