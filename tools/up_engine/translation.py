@@ -37,13 +37,15 @@ class Translation:
           Unsupported: It has a feature that we or PDDL do not have.
           UsageError: It is larger than our parser allows.
         """
-        writer = PDDLWriter(original)
+        writable, is_possible = _without_constant_goals(original)
+        writer = PDDLWriter(writable)
         try:
             texts = writer.get_domain(), writer.get_problem()
         except (UPException, NotImplementedError) as error:
             raise Unsupported(f"not expressible in PDDL: {error}") from None
         domain = parse_domain(texts[0], "domain")
-        return cls(original, writer, domain, parse_problem(texts[1], domain, "problem"))
+        problem = parse_problem(texts[1], domain, "problem")
+        return cls(original, writer, domain, problem if is_possible else problem.with_goal("(or)"))
 
     @property
     def timed(self) -> bool:
@@ -116,6 +118,19 @@ class Translation:
             if value.is_constant() and abs(Fraction(value.constant_value()) - duration) < ROUNDING_S:
                 return Fraction(value.constant_value())
         return duration
+
+
+def _without_constant_goals(original: Any) -> tuple[Any, bool]:
+    """The problem without goals that are always true or never, which its writer refuses; whether none is never true."""
+    goals = [goal.simplify() for goal in original.goals]
+    if not any(goal.is_bool_constant() for goal in goals):
+        return original, True
+    writable = original.clone()
+    writable.clear_goals()
+    for goal in goals:
+        if not goal.is_bool_constant():
+            writable.add_goal(goal)
+    return writable, not any(goal.is_false() for goal in goals)
 
 
 def reduced(orderings: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:

@@ -16,6 +16,7 @@ from unified_planning.engines import CompilationKind, ValidationResultStatus
 from unified_planning.engines import PlanGenerationResultStatus as Status
 from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, TimeTriggeredPlan
 from unified_planning.shortcuts import (
+    And,
     AnytimePlanner,
     BoolType,
     Compiler,
@@ -26,7 +27,9 @@ from unified_planning.shortcuts import (
     InstantaneousAction,
     Int,
     MinimizeActionCosts,
+    Not,
     OneshotPlanner,
+    Or,
     PlanValidator,
     Problem,
     RealType,
@@ -208,6 +211,20 @@ def test_durations_of_given_plans_are_exact_whatever_the_epsilon(epsilon, durati
     plan = TimeTriggeredPlan([(Fraction(0), action, Fraction(duration))])
     with PlanValidator(name="tailor") as validator:
         assert validator.validate(problem, plan).status is status
+
+
+def test_goals_that_are_always_true_or_never_have_plans_or_proofs():
+    always, never = two_ways(), two_ways()
+    fact = always.fluents[0]
+    always.add_goal(Or(fact, Not(fact)))
+    never.add_goal(And(fact, Not(fact)))
+    with OneshotPlanner(name="tailor") as planner:
+        found, proven = planner.solve(always), planner.solve(never)
+    assert (found.status, proven.status) == (Status.SOLVED_SATISFICING, Status.UNSOLVABLE_PROVEN)
+    for problem, verdict in ((always, ValidationResultStatus.VALID), (never, ValidationResultStatus.INVALID)):
+        with PlanValidator(name="tailor") as validator:
+            assert validator.validate(problem, found.plan).status is verdict
+    assert set(their_verdicts(always, found.plan)) == {ValidationResultStatus.VALID}
 
 
 @pytest.mark.parametrize("seconds", [1e-7, 2000.0])
