@@ -105,13 +105,15 @@ def _declare(form: Form, domain: Domain) -> Domain:
         case head if head in _OTHER_PARTS:
             raise form.place.unsupported(_OTHER_PARTS[head])
         case head:
-            raise form.place.error(f"unknown part '{head or '('}' of a domain")
+            raise form.place.error(f"unknown part '{head}' of a domain")
 
 
 def check_requirements(nodes: list[Node]) -> None:
-    """Raises `Unsupported` for a requirement outside the planner's language."""
+    """Raises PddlError for what is no requirement, `Unsupported` for one outside the planner's language."""
     for node in nodes:
         word = word_of(node, "a requirement")
+        if word[0] != ":":
+            raise node.place.error(f"expected a requirement such as :typing, found '{word}'")
         if word not in SUPPORTED:
             raise node.place.unsupported(f"the requirement {word}")
 

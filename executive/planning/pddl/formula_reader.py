@@ -21,7 +21,7 @@ from tailor.executive.planning.pddl.language import (
     When,
 )
 from tailor.executive.planning.pddl.substitution import narrowed, substituted
-from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, Place, form_of, word_of
+from tailor.executive.planning.pddl.syntax.s_expressions import Form, Node, form_of, word_of
 from tailor.executive.planning.pddl.typed_lists import variables_of
 
 MAX_PARTS = 100_000  # of all derived predicates in a text: a sixth of a second
@@ -190,9 +190,8 @@ def read_timed(node: Node, scope: Scope) -> tuple[Condition, ...]:
 
 def moment_of(form: Form) -> When:
     """The moment that (at start ..), (at end ..) or (over all ..) names."""
-    place: Place = form.place
     if len(form.items) == 3 and not isinstance(form.items[1], Form):
         moment = MOMENTS.get((form.head, form.items[1].text))
         if moment is not None:
             return moment
-    raise place.error("expected (at start ...), (over all ...) or (at end ...)")
+    raise form.place.error(f"expected (at start ...), (over all ...) or (at end ...), found {form.outline}")

@@ -58,10 +58,11 @@ def _duration(node: Node, scope: Scope) -> tuple[DurationBound, ...]:
     if form.head in {"<", ">"}:
         raise form.place.unsupported(f"a strict limit of a duration ({form.head} ...)")
     if form.head not in {"=", "<=", ">="}:
-        raise form.place.error("expected (= ?duration ...), (<= ?duration ...) or (>= ?duration ...)")
+        expected = "(= ?duration ...), (<= ?duration ...) or (>= ?duration ...)"
+        raise form.place.error(f"expected {expected}, found {form.outline}")
     expect(form, 2)
-    if word_of(form.items[1], "?duration") != "?duration":
-        raise form.items[1].place.error("expected ?duration")
+    if (word := word_of(form.items[1], "?duration")) != "?duration":
+        raise form.items[1].place.error(f"expected ?duration, found '{word}'")
     operator = cast(OneOf["=", "<=", ">="], form.head)
     return (DurationBound(operator, _numeric(form.items[2], scope)),)
 
@@ -75,7 +76,7 @@ def _numeric(node: Node, scope: Scope) -> Numeric:
     if node.head == "total-cost":
         raise node.place.unsupported("the changing (total-cost) in a number")
     if parameters is None:
-        raise node.place.error(f"expected a number or a function, found '({node.head} ...)'")
+        raise node.place.error(f"expected a number or a function, found {node.outline}")
     return Function(node.head, read_terms(node, parameters, scope))
 
 

@@ -100,7 +100,7 @@ def _read_part(form: Form, draft: _Draft, domain: Domain) -> None:
         case ":constraints":
             raise form.place.unsupported("a trajectory constraint")
         case head:
-            raise form.place.error(f"unknown part '{head or '('}' of a problem")
+            raise form.place.error(f"unknown part '{head}' of a problem")
 
 
 def _check_domain(form: Form, domain: Domain) -> None:
@@ -166,7 +166,9 @@ def _literal(form: Form, scope: Scope) -> Literal:
 
 def _read_value(form: Form, draft: _Draft, scope: Scope) -> None:
     expect(form, 2)
-    function = form_of(form.items[1], "a function such as (distance a b)")
+    function = form_of(form.items[1], expected := "a function such as (distance a b)")
+    if not function.head:
+        raise function.place.error(f"expected {expected}, found {function.outline}")
     parameters = scope.domain.functions.get(function.head)
     if parameters is None:
         raise function.place.error(f"unknown function '{function.head}'")

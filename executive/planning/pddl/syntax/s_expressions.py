@@ -56,6 +56,11 @@ class Form:
         first = self.items[0] if self.items else None
         return first.text if isinstance(first, Word) else ""
 
+    @property
+    def outline(self) -> str:
+        """The list as an error shows it: its head without the rest."""
+        return f"({self.head} ...)" if self.head else "((...) ...)" if self.items else "()"
+
 
 Node = Word | Form
 
@@ -156,11 +161,13 @@ def parts_in_order(form: Form, what: str, order: tuple[str, ...], repeated: froz
       repeated: Heads of the parts that may occur more than once.
 
     Raises:
-      PddlError: Another part occurs twice.
+      PddlError: Another part occurs twice, or one has no head.
     """
     parts = [form_of(part, what) for part in form.items[2:]]
     seen: set[str] = set()
     for part in parts:
+        if not part.head:
+            raise part.place.error(f"expected {what}, found {part.outline}")
         if part.head in seen - repeated:
             raise part.place.error(f"'{part.head}' is given twice")
         seen.add(part.head)

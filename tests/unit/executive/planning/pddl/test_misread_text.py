@@ -31,6 +31,13 @@ DASH = "; a '-' between names and their type stands alone"
         ("(r))", "(r\x00))", "2:28: a control character, U+0000"),
         ("(r))", "(r) (r\u200b))", "2:32: an invisible character, U+200B"),
         ("(r))", "(r)) ; \u202e", "2:33: an invisible character, U+202E"),
+        ("(:types a b)", "(:types a b) ()", "1:33: expected a part such as (:action ...), found ()"),
+        ("(:types a b)", "(:types a b) ((r) r)", "1:33: expected a part such as (:action ...), found ((...) ...)"),
+        (
+            "(:types a b)",
+            "(:types a b) (:requirements strips)",
+            "1:48: expected a requirement such as :typing, found 'strips'",
+        ),
     ],
 )
 def test_a_domain_with_names_that_are_none_is_refused(old, new, message):
@@ -49,6 +56,7 @@ def test_a_domain_with_names_that_are_none_is_refused(old, new, message):
         ("(r))", "(r) (at 0 (not (r))))", "3:13: (not (r)) and its opposite in the initial state"),
         ("(r))", "(at 1_0 (r)))", "3:13: expected a number, found '1_0'"),
         ("(r))", "(r) ())", "3:13: expected an atom such as (predicate argument), found ()"),
+        ("(r))", "(= () 3))", "3:12: expected a function such as (distance a b), found ()"),
         (
             " (:goal",
             " (:metric minimize (total-time x)) (:goal",
@@ -66,6 +74,22 @@ def test_a_problem_that_can_be_read_in_two_ways_is_refused(old, new, message):
 def test_numbers_are_decimal(number):
     with pytest.raises(PddlError, match=r"d.pddl:2:61: expected a number, found "):
         parse_domain(TIMED.format(duration=f"(= ?duration {number})", effect="(at end (p))"), "d.pddl")
+
+
+@pytest.mark.parametrize(
+    ("duration", "effect", "message"),
+    [
+        ("(= ?d 3)", "()", "2:51: expected ?duration, found '?d'"),
+        ("(?duration 3)", "()", "2:48: expected (= ?duration ...), (<= ?duration ...) or (>= ?duration ...), "
+         "found (?duration ...)"),
+        ("(= ?duration (p))", "()", "2:61: expected a number or a function, found (p ...)"),
+        ("()", "(p)", "2:73: expected (at start ...), (over all ...) or (at end ...), found (p ...)"),
+    ],
+)  # fmt: skip
+def test_what_stands_in_place_of_a_duration_or_a_moment_is_named(duration, effect, message):
+    with pytest.raises(PddlError) as caught:
+        parse_domain(TIMED.format(duration=duration, effect=effect), "d.pddl")
+    assert str(caught.value) == f"d.pddl:{message}"
 
 
 @pytest.mark.parametrize("number", ["3", "3.", ".3", "+3", "3e0", "3.0E-1"])
