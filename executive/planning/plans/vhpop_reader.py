@@ -22,6 +22,8 @@ _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?"
 _STEP = re.compile(r"Step\s+(\d+)\s*:\s*(\(.*\))")
 _LINK = re.compile(r"(\d+)\s*->\s*(\(.*\))")
 _PAIR = re.compile(r"(\d+)<(\d+)")
+_INTEGER = re.compile(r"-?[0-9]+")
+_DECIMAL = re.compile(r"[0-9]+(?:\.[0-9]*)?(?:e[-+]?[0-9]+)?")
 _SKIPPED = ("Time:", "Makespan:", "Parsing time:", "Memory used")
 
 
@@ -138,15 +140,16 @@ def _enter(action: Fact, start: float, duration: str | None, draft: _Draft) -> N
 
 def _whole(text: str) -> int:
     _check_length(text)
+    if not _INTEGER.fullmatch(text):
+        raise ValueError(f"expected a whole number, found '{text[:60]}'")
     return int(text)
 
 
 def _number(text: str) -> float:
     _check_length(text)
-    value = float(text)
-    if not 0 <= value < 10**MAX_DIGITS:
-        raise ValueError(f"expected a time, found '{text}'")
-    return value
+    if not _DECIMAL.fullmatch(text) or not 0 <= float(text) < 10**MAX_DIGITS:
+        raise ValueError(f"expected a time, found '{text[:60]}'")
+    return float(text)
 
 
 def _tick(text: str) -> float:

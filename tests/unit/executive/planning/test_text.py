@@ -81,7 +81,8 @@ def test_an_empty_plan_has_a_goal_and_nothing_else():
         ("Step 1   : (a)\nGoal     : \norderings = \n  0 inf\n", "expected a 3 x 3 table"),
         ("x" * 2_000_000, "longer than"),
         ("1:(a)\n" * 300, "more than 200 steps"),
-        ("Step 1   : (a)\nGoal     : \norderings = \n  0\ntolerance = soon\n", "line 5"),
+        ("Step 1   : (a)\nGoal     : \norderings = \n  0\ntolerance = soon\n", "line 5: expected a time, found 'soon'"),
+        ("Goal     : \norderings = \n  0\n(define x)\n", "line 4: expected a whole number, found '(define'"),
     ],
 )
 def test_bad_text_is_refused_with_its_line(text, message):
