@@ -22,7 +22,7 @@ def format_plan(plan: Plan) -> str:
       plan: A finished plan.
 
     Returns:
-      Text that `parse_plan` reads; starts are levels from 1, or seconds in durative plans.
+      Text that `parse_plan` reads if there is a step; starts are levels from 1, or seconds in durative plans.
     """
     lines = [f";{plan.problem}"]
     for step in plan.steps:
