@@ -10,9 +10,9 @@ import numpy as np
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.refinement.refinement import Refinement
 from tailor.schemas.messages import Subgoals
-from tailor.tools.commands.look.why import explained_decisions
+from tailor.tools.viewer.decisions.explained_decisions import explained_decisions
+from tailor.tools.viewer.decisions.explanation_text import explanation_lines
 from tailor.tools.viewer.explainer import fields_of
-from tailor.tools.viewer.explanation_text import explanation_lines
 from tailor.tools.viewer.explanations.explanation import Explanation, explain
 from tests.support import synthetic_run
 from tests.support.bus_system import ROOT

@@ -14,15 +14,16 @@ from tailor.models.features.features import Quantity
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import RefinementReport, Subgoals
 from tailor.tools.figures.alternatives import draw_alternatives
-from tailor.tools.viewer.decisions import Decision
-from tailor.tools.viewer.explainer import Explainer, fields_of
-from tailor.tools.viewer.explanation_text import (
+from tailor.tools.viewer.decisions.decision_reader import Decision
+from tailor.tools.viewer.decisions.explanation_text import (
     duration_table,
     explanation_lines,
     features_text,
     long_search_text,
     search_text,
 )
+from tailor.tools.viewer.decisions.recorded_search import RecordedSearch
+from tailor.tools.viewer.explainer import Explainer, fields_of
 from tailor.tools.viewer.explanations import missing_certificate
 from tailor.tools.viewer.explanations.decided_sequence import sequence_of
 from tailor.tools.viewer.explanations.explanation import explain
@@ -104,7 +105,7 @@ def test_a_proof_that_proved_nothing_is_a_reason(refined, reason, monkeypatch) -
 def test_the_reason_is_printed_in_place_of_the_gap(refined) -> None:
     explanation = explained(message_of(*refined))
     lines = explanation_lines(
-        explanation, 4.0, Decision(1.0, message_of(*refined), report(), 0.1, 3), "its models are odd"
+        explanation, 4.0, Decision(1.0, message_of(*refined), RecordedSearch(report(), 3, 0.1)), "its models are odd"
     )
     assert "not certified: its models are odd" in lines
 
@@ -231,7 +232,7 @@ def test_the_gap_to_a_long_search_is_given_in_seconds_and_per_cent(chosen, best,
 @pytest.mark.parametrize(("chosen_s", "late"), [(8.58, False), (8.78, True), (float("inf"), False)])
 def test_a_better_choice_that_was_not_adopted_is_named(chosen_s, late) -> None:
     report = RefinementReport(0, 9, 2, "DifferentialEvolution", True, 12096, 109, 8.77, 8.58)
-    text = search_text(Decision(8.9, Subgoals(0, 7, 2), report, 0.18, 3), chosen_s)
+    text = search_text(Decision(8.9, Subgoals(0, 7, 2), RecordedSearch(report, 3, 0.18)), chosen_s)
     assert ("found after the action had begun and not adopted" in text) == late
 
 
@@ -242,7 +243,7 @@ def test_a_better_choice_that_was_not_adopted_is_named(chosen_s, late) -> None:
 def test_an_invalid_objective_is_no_number_of_seconds(greedy, best, words):
     """As a message has no infinity, it holds -1 s."""
     report = RefinementReport(0, 9, 2, "DifferentialEvolution", True, 12096, 109, greedy, best)
-    text = search_text(Decision(8.9, Subgoals(0, 7, 2), report, 0.18, 3), 8.6)
+    text = search_text(Decision(8.9, Subgoals(0, 7, 2), RecordedSearch(report, 3, 0.18)), 8.6)
     assert text.endswith(words)
 
 

@@ -9,7 +9,7 @@ from rich.table import Table
 from tailor.models.rules.rule_text import UNITLESS
 from tailor.schemas.messages import RefinementReport
 from tailor.tools.cli.plain_text import plain
-from tailor.tools.viewer.decisions import Decision
+from tailor.tools.viewer.decisions.decision_reader import Decision
 from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter
 from tailor.tools.viewer.explanations.situation import Situation
@@ -43,7 +43,7 @@ def explanation_lines(
     for situation in explanation.situations:
         lines += [features_text(situation), *([f"  {situation.rule}"] if situation.rule else [])]
     long_search = long_search_text(explanation.chosen_cost, best_cost)
-    certified = certificate_text(certified_gap_pct(decision.report, explanation.chosen_cost), not_certified)
+    certified = certificate_text(certified_gap_pct(decision.search.report, explanation.chosen_cost), not_certified)
     return [*lines, long_search, certified, search_text(decision, explanation.chosen_cost)]
 
 
@@ -107,13 +107,13 @@ def certificate_text(gap_pct: float | None, not_certified: str = NO_BOUND) -> st
 def search_text(decision: Decision, chosen_cost: float) -> str:
     """Effort of the search, and outcome of the action."""
     parts = []
-    report = decision.report
+    search, report = decision.search, decision.search.report
     if report is not None:
         state = "finished" if report.finished else "interrupted"
         parts.append(
             f"searched by {report.solver}: {_counted(report.evaluations, 'evaluation')} in "
-            f"{_counted(report.checks, 'check')}, {1000 * decision.deliberation_s:.0f} ms of deliberation in "
-            f"{_counted(decision.ticks, 'tick')}, {state}; "
+            f"{_counted(report.checks, 'check')}, {1000 * search.deliberation_s:.0f} ms of deliberation in "
+            f"{_counted(search.ticks, 'tick')}, {state}; "
             f"objective {_reported(report.greedy_s)} (greedy) to {_reported(report.best_s)}"
         )
         if report.best_s >= 0 and math.isfinite(chosen_cost) and chosen_cost - report.best_s >= SHOWN_S:

@@ -1,0 +1,1 @@
+"""Decisions of a recorded run, and their explanation as text."""

@@ -1,0 +1,132 @@
+"""Decisions of a run: the subgoals in force when an action started, and the search that found them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tailor.schemas.messages import (
+    ActionFinished,
+    Contexts,
+    ExecStatus,
+    Message,
+    Provenance,
+    RefinementReport,
+    Subgoals,
+    TickReport,
+)
+from tailor.tools.viewer.decisions.recorded_search import RecordedSearch
+from tailor.tools.viewer.recorded_messages import Timed
+
+
+@dataclass(slots=True)
+class Decision:
+    """Subgoals, the search that found them, and the action that was started with them.
+
+    Attributes:
+      at_s: Start of the action; publication of the subgoals if they started none.
+      subgoals: The choice.
+      search: The search, of which nothing is known if it was not reported.
+      started: Whether an action was started with these subgoals.
+      finished: End of that action.
+      finished_s: Time of that end.
+      objects: Objects near the actions, if there were any.
+    """
+
+    at_s: float
+    subgoals: Subgoals
+    search: RecordedSearch
+    started: bool = False
+    finished: ActionFinished | None = None
+    finished_s: float | None = None
+    objects: Contexts | None = None
+
+
+class DecisionReader:
+    """Finds the decisions among the messages of a run, and keeps none of them.
+
+    Attributes:
+      provenance: The first provenance of the run, as far as it has been read.
+      first_s: Time of the first decision.
+      end_s: Time of the last message.
+    """
+
+    def __init__(self) -> None:
+        self.provenance = ""
+        self.first_s: float | None = None
+        self.end_s = 0.0
+        self._replaced: Decision | None = None  # the last but one: reports of its last tick may still come
+        self._newest: Decision | None = None
+        self._search = RecordedSearch()  # the present one
+        self._tick: TickReport | None = None  # the newest
+        self._objects: Contexts | None = None
+        self._action = (-1, "")  # in execution
+
+    def decisions(self, messages: Iterable[Timed]) -> Iterator[Decision]:
+        """Decisions in order: one for each started action, and those that were replaced before or during it."""
+        for t in messages:
+            self.end_s = max(self.end_s, t.at_s)
+            if isinstance(t.message, Subgoals):
+                if self._replaced is not None:
+                    yield self._replaced
+                self._decide(t.at_s, t.message)
+            else:
+                self._note(t.at_s, t.message)
+        yield from (each for each in (self._replaced, self._newest) if each is not None)
+
+    def _decide(self, at_s: float, subgoals: Subgoals) -> None:
+        """Begin a decision, with the search if that reported in the same tick or the one before."""
+        self.first_s = at_s if self.first_s is None else self.first_s
+        if self._newest is not None:
+            self._newest.search = self._newest.search.so_far()
+        report = self._search.report
+        fresh = report is not None and report.tick >= subgoals.tick - 1
+        objects = self._objects if self._objects is not None and self._objects.tick == subgoals.tick else None
+        search = self._search if fresh else RecordedSearch()
+        self._replaced, self._newest = self._newest, Decision(at_s, subgoals, search, objects=objects)
+
+    def _note(self, at_s: float, message: Message) -> None:
+        match message:
+            case Provenance():
+                self.provenance = self.provenance or message.json
+            case Contexts():
+                self._objects = message
+            case TickReport():
+                self._tick = message
+                for search in self._searches():
+                    search.note(message)
+            case RefinementReport():
+                if not self._search.adds(message, self._tick):
+                    self._search = RecordedSearch()
+                    self._search.adds(message, self._tick)
+            case ExecStatus():
+                self._start(at_s, message)
+            case ActionFinished():
+                self._search = RecordedSearch()  # the next report is of another decision, also if it counts more checks
+                if self._newest is not None:
+                    self._newest.finished, self._newest.finished_s = message, at_s
+
+    def _searches(self) -> list[RecordedSearch]:
+        """Those whose ticks may still be reported, each once."""
+        searches = [self._search, *(each.search for each in (self._replaced, self._newest) if each is not None)]
+        return list({id(search): search for search in searches}.values())
+
+    def _start(self, at_s: float, message: ExecStatus) -> None:
+        now = (message.action_index if message.action else -1, message.action)
+        if now != self._action and message.action and self._newest is not None:
+            self._newest.at_s, self._newest.started = at_s, True
+        self._action = now
+
+
+def in_force(decisions: Iterable[Decision], at_s: float) -> Decision | None:
+    """The decision in force at a time; None before the first. The tenths that are printed count, too."""
+    newest = None
+    for decision in decisions:
+        if min(decision.at_s, round(decision.at_s, 1)) <= at_s:
+            newest = decision
+    return newest
+
+
+def executed(decisions: Iterable[Decision]) -> Iterator[Decision]:
+    """Decisions with which actions were started or finished."""
+    return (decision for decision in decisions if decision.started or decision.finished is not None)
