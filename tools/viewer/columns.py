@@ -6,8 +6,12 @@ that repeat their neighbours on both sides are left out: the page shows a sample
 
 from __future__ import annotations
 
+import json
+import math
+from array import array
 from collections.abc import Iterable, Iterator
-from itertools import count, groupby
+from dataclasses import dataclass, field
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -19,43 +23,58 @@ COUNTED = "tick"  # the page counts these
 TIME_DIGITS = 3
 MAX_STEPS = 2.0**53  # beyond, a float holds no whole number exactly
 
-Block = dict[str, Any]
+
+@dataclass(slots=True)
+class _Stretch:
+    """Samples of one kind and form, as numbers: a table for each would take many times as much memory."""
+
+    form: Any
+    at_s: array[float] = field(default_factory=lambda: array("d"))
+    values: array[float] = field(default_factory=lambda: array("d"))  # sample after sample; NaN for none
 
 
-def packed(events: Iterable[Event]) -> tuple[list[list[Any]], list[Block]]:
-    """All events as the page reads them.
+def packed(events: Iterable[Event]) -> tuple[list[str], list[str]]:
+    """All events as the page reads them, each row and block as JSON.
 
     Returns:
       Rows [at, kind, fields] of what is no sample, and blocks of samples of one kind and form.
       A block's `like` has the form of the fields, with the number of a column in place of each value.
     """
-    rows: list[list[Any]] = []
-    samples: dict[str, list[Event]] = {}
+    rows: list[str] = []
+    samples: dict[str, list[_Stretch]] = {}
     for event in events:
         if is_sample(event.kind):
-            samples.setdefault(event.kind, []).append(event)
+            _add(samples.setdefault(event.kind, []), event)
         else:
-            rows.append(event.json_value())
-    return rows, [block for kind, each in samples.items() for block in _blocks(kind, each)]
+            rows.append(compact_json(event.json_value()))
+    return rows, [compact_json(_block(kind, each)) for kind, stretches in samples.items() for each in stretches]
 
 
-def _blocks(kind: str, events: list[Event]) -> Iterator[Block]:
-    """A block for each stretch of samples with the same form."""
-    flat = ((event.at_s, *_flattened(event.fields)) for event in events)
-    for like, stretch in groupby(flat, key=lambda sample: sample[1]):
-        samples = list(stretch)
-        at = np.array([at_s for at_s, _, _ in samples])
-        values = np.array([each for _, _, each in samples], dtype=np.float64)  # NaN where there is none
-        kept = slice(None) if kind == COUNTED else _told_apart(values)
-        columns = [_column(column, DIGITS) for column in values[kept].T]
-        at = at[kept]
-        yield {
-            "kind": kind,
-            "length": len(at),
-            "at": _column(at, TIME_DIGITS),
-            "like": _numbered(like, count()),
-            "columns": columns,
-        }
+def compact_json(value: Any) -> str:
+    """JSON without spaces; raises ValueError for numbers that are none there."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":"))
+
+
+def _add(stretches: list[_Stretch], event: Event) -> None:
+    """Add a sample to the last stretch, or begin one if its form is another."""
+    form, numbers = _flattened(event.fields)
+    if not stretches or stretches[-1].form != form:
+        stretches.append(_Stretch(form))
+    stretches[-1].at_s.append(event.at_s)
+    stretches[-1].values.extend(math.nan if number is None else number for number in numbers)
+
+
+def _block(kind: str, stretch: _Stretch) -> dict[str, Any]:
+    at = np.array(stretch.at_s)
+    values = np.array(stretch.values).reshape(len(at), len(stretch.values) // len(at))
+    kept = slice(None) if kind == COUNTED else _told_apart(values)
+    return {
+        "kind": kind,
+        "length": len(at[kept]),
+        "at": _column(at[kept], TIME_DIGITS),
+        "like": _numbered(stretch.form, count()),
+        "columns": [_column(column, DIGITS) for column in values[kept].T],
+    }
 
 
 def _told_apart(values: Any) -> Any:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import html
-import json
 import re
 from collections.abc import Iterable, Mapping
 from importlib import resources
-from typing import Any
 
-from tailor.tools.viewer.columns import packed
+from tailor.tools.viewer.columns import compact_json, packed
 from tailor.tools.viewer.timeline import Event
 
 STYLES = ("page.css", "controls.css", "drawing.css", "sidebyside.css")
@@ -50,26 +48,26 @@ def page(title: str, events: Iterable[Event], live: bool = False, stop_token: st
       framed: Whether the page is a frame of another one, which has the player.
     """
     rows, samples = packed(events)
-    data = {"title": title, "live": live, "stop": stop_token, "framed": framed, "rows": rows, "samples": samples}
+    head = compact_json({"title": title, "live": live, "stop": stop_token, "framed": framed})
+    data = f'{head[:-1]},"rows":[{",".join(rows)}],"samples":[{",".join(samples)}]}}'
     return assembled("page.html", SCRIPTS, {"TITLE": html.escape(title)}, data)
 
 
-def assembled(template: str, scripts: Iterable[str], texts: Mapping[str, str], data: Mapping[str, Any]) -> str:
+def assembled(template: str, scripts: Iterable[str], texts: Mapping[str, str], data: str) -> str:
     """A template with everything that it needs in it.
 
     Args:
       template: Name of the asset with places @NAME@.
       scripts: Names of scripts; together they form one module.
       texts: Text, as HTML, for other places by name.
-      data: What the scripts read.
+      data: What the scripts read, as JSON.
     """
-    embedded = json.dumps(data, allow_nan=False, separators=(",", ":"))
     parts = {
         **texts,
         "STYLE": "\n".join(map(_asset, STYLES)),
         "SCRIPT": "\n".join(map(_asset, scripts)),
         # no string of a recording may end the script element
-        "DATA": embedded.replace("<", "\\u003c"),
+        "DATA": data.replace("<", "\\u003c"),
     }
     [first, *others] = re.split(r"@([A-Z]+)@", _asset(template))
     return first + "".join(parts[name] + after for name, after in zip(others[::2], others[1::2], strict=True))

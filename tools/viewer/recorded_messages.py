@@ -92,10 +92,10 @@ def _check_robot(path: Path, robot: str, owners: Collection[str]) -> None:
         raise UsageError(f"{path}: no message of robot '{robot}', expected one of: {known}")
 
 
-def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list[Event]:
+def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> Iterator[Event]:
     """All events of a recording that the page shows, on a time axis that starts with the first message.
 
-    The damage of a damaged one is the first event.
+    The damage of a damaged one is the last event, at the start of the axis.
 
     Raises:
       UsageError: See `timed`; the robot is that which the timeline is to show.
@@ -108,10 +108,10 @@ def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> list
         damage = found
 
     better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
-    wanted = timed(path, sender, SENSED if better else (), note, robot)
-    events = [event for t in wanted for event in _events_of(t, timeline)]
-    text = notice(path, damage)
-    return [Event(0.0, DAMAGE, {"text": text}), *events] if text else events
+    for t in timed(path, sender, SENSED if better else (), note, robot):
+        yield from _events_of(t, timeline)
+    if text := notice(path, damage):
+        yield Event(0.0, DAMAGE, {"text": text})
 
 
 def _events_of(t: Timed, timeline: RunTimeline) -> list[Event]:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
+from tailor.tools.viewer.columns import compact_json
 from tailor.tools.viewer.page import assembled, page
 from tailor.tools.viewer.timeline import Event
 
 SCRIPTS = ("elements.js", "player.js", "sidebyside.js")
 
 
-def side_by_side(title: str, caption: str, runs: Mapping[str, Sequence[Event]]) -> str:
+def side_by_side(title: str, caption: str, runs: Mapping[str, Iterable[Event]]) -> str:
     """The whole page, one file without external references.
 
     Args:
@@ -21,4 +22,4 @@ def side_by_side(title: str, caption: str, runs: Mapping[str, Sequence[Event]]) 
     """
     pages = [{"title": name, "page": page(name, events, framed=True)} for name, events in runs.items()]
     texts = {"TITLE": html.escape(title), "CAPTION": html.escape(caption)}
-    return assembled("sidebyside.html", SCRIPTS, texts, {"pages": pages})
+    return assembled("sidebyside.html", SCRIPTS, texts, compact_json({"pages": pages}))

@@ -25,6 +25,7 @@ from tailor.tools.viewer.silence import Silence
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
 NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms, m.LogLine)
+REPORTS = (m.Subgoals, m.RefinementReport, m.PlanReport, m.ActionFinished)  # one with the last one's stamp is no news
 SAMPLES = frozenset({"tick", "belief", "truth", "believed", "seen", "odom"})
 
 Rows = list[tuple[str, Fields]]  # kind and fields of events
@@ -65,7 +66,7 @@ class RunTimeline:
         self._scenes = RobotScenes()
         self._silence = Silence()
         self._action_index = -1  # of the action in execution
-        self._last: dict[str, Any] = {}  # by kind: last fields of states
+        self._last: dict[str, Any] = {}  # by kind: last fields of states; by key: last reports
         self._outlines: dict[str, Outline] = {}  # by kind: the last ones
         self._sampled_s: dict[str, float] = {}  # by kind: time of the last sample
 
@@ -86,6 +87,10 @@ class RunTimeline:
         if topic and self.robot and owner not in ("exec", self.robot):
             return []
         self._silence.note(message, at_s)
+        if isinstance(message, REPORTS):
+            if self._last.get(key) == message:
+                return self.silences(at_s)
+            self._last[key] = message
         events = [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
         return self.silences(at_s) + events
 

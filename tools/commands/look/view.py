@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Console
@@ -96,17 +97,18 @@ def _titles(recordings: list[Path]) -> dict[str, Path]:
     return {plain(path.name if names[path.name] == 1 else str(path)): path for path in recordings}
 
 
-def _events(recording: Path, arguments: argparse.Namespace) -> list[Event]:
+def _events(recording: Path, arguments: argparse.Namespace) -> Iterator[Event]:
+    """Events of a recording, one after another; then what is missing of them is printed."""
     console, explainer = Console(stderr=True), _explainer(arguments)
+    timeline, notes = RunTimeline(explainer, arguments.robot), list[str]()
     with console.status(Text(plain(f"reading {recording}"))):
-        timeline = RunTimeline(explainer, arguments.robot)
-        events = recorded_events(recording, timeline, arguments.sender)
-    for event in events[:1]:
-        if event.kind == DAMAGE:
-            console.print(event.fields["text"], highlight=False, markup=False, soft_wrap=True)
+        for event in recorded_events(recording, timeline, arguments.sender):
+            if event.kind == DAMAGE:
+                notes.append(event.fields["text"])
+            yield event
     if timeline.scene_fault:
-        text = plain(f"the scene of {timeline.robot}: {timeline.scene_fault}")
-        console.print(text, highlight=False, markup=False, soft_wrap=True)
+        notes.append(plain(f"the scene of {timeline.robot}: {timeline.scene_fault}"))
     if explainer is not None and explainer.missing:
-        console.print(Text(plain(f"alternatives are not shown: {explainer.missing}")), soft_wrap=True)
-    return events
+        notes.append(plain(f"alternatives are not shown: {explainer.missing}"))
+    for note in notes:
+        console.print(note, highlight=False, markup=False, soft_wrap=True)

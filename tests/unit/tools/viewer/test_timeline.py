@@ -80,6 +80,14 @@ def test_an_unchanged_state_is_sent_once() -> None:
     assert len(timeline.events_of(2.0, "agilo/driver", stopped)) == 1
 
 
+def test_a_report_that_comes_again_is_shown_once() -> None:
+    """600 000 of them fit into 10 kB of a recording."""
+    timeline = RunTimeline()
+    twice = [timeline.events_of(at_s, "exec/subgoals", m.Subgoals(7, 5, 2, ())) for at_s in (0.1, 0.2)]
+    assert [kinds(events) for events in twice] == [{"subgoals"}, set()]
+    assert kinds(timeline.events_of(0.3, "exec/subgoals", m.Subgoals(8, 5, 2, ()))) == {"subgoals"}
+
+
 def test_fast_sensors_are_thinned_out_and_ten_hertz_come_through_with_jitter() -> None:
     timeline = RunTimeline()
     fast = [timeline.events_of(k / 50, "agilo/odom", m.Odometry(0, k, 0, 0, 0, 0)) for k in range(100)]
