@@ -344,6 +344,16 @@ def test_a_child_has_a_session_of_its_own_so_that_ctrl_c_reaches_its_parent_alon
         child.kill()
 
 
+def test_children_heed_signals_that_their_parent_ignores(tmp_path):
+    """As one does that the script of a shell started in the background."""
+    report = "import signal; print(*(signal.getsignal(n) is signal.SIG_IGN for n in (2, 15, 1)))"
+    with handlers_kept(), (tmp_path / "out").open("w") as out:
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+        assert Child("c", [sys.executable, "-c", report], out).wait(PATIENCE_S) == 0
+    assert (tmp_path / "out").read_text() == "False False True\n", "nohup holds for the children, too"
+
+
 @pytest.mark.promise("P10")
 def test_children_are_stopped_in_reverse_order_and_one_that_ignores_it_is_killed(tmp_path):
     order = []
