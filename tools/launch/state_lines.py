@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from tailor.runtime.aside import FINISH_S
 from tailor.runtime.realtime import take_ordinary
@@ -15,33 +15,33 @@ PERIOD_S = 0.2
 
 
 @contextlib.contextmanager
-def state_lines(text: Callable[[], str], wanted: bool = True) -> Iterator[None]:
-    """Print a text whenever it has changed in more than its numbers, from a thread of its own.
+def state_lines(*texts: Callable[[], str]) -> Iterator[None]:
+    """Print each text whenever it has changed in more than its numbers, all from one thread, so that lines stay whole.
 
     Args:
-      text: Returns the present state in one line; empty: nothing to print. It is called in the thread.
-      wanted: False: print nothing, for a process whose supervisor reports its state.
+      texts: Each returns a present state in one line; empty: nothing to print. They are called in the thread.
     """
     ended = threading.Event()
-    thread = threading.Thread(target=_print, args=(text, ended), name="state lines", daemon=True)
-    if wanted:
+    thread = threading.Thread(target=_print, args=(texts, ended), name="state lines", daemon=True)
+    if texts:
         thread.start()
     try:
         yield
     finally:
         ended.set()
-        if wanted:
+        if texts:
             thread.join(FINISH_S)
 
 
-def _print(text: Callable[[], str], ended: threading.Event) -> None:
+def _print(texts: Sequence[Callable[[], str]], ended: threading.Event) -> None:
     take_ordinary()
-    last = ""
+    last = [""] * len(texts)
     while True:
         over = ended.wait(PERIOD_S)
-        line = text()
-        if line and without_numbers(line) != last:
-            last = without_numbers(line)
-            note(plain(line))
+        for number, text in enumerate(texts):
+            line = text()
+            if line and without_numbers(line) != last[number]:
+                last[number] = without_numbers(line)
+                note(plain(line))
         if over:
             return

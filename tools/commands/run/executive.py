@@ -76,9 +76,10 @@ def run(arguments: argparse.Namespace) -> int:
         print_states = not notifier.supervised
         if print_states:
             print(beginning(context, goal), flush=True)
-        printed = state_lines(lambda: state_line(shell.state, context.domain.robot), print_states)
-        refused = state_lines(lambda: shell.refused_fields)  # also beneath a launcher: the status does not tell it
-        with blamed_on_running_package(spec_of(arguments.domain)), printed, refused:
+        texts = [lambda: shell.refused_fields]  # also beneath a launcher: the status does not tell it
+        if print_states:
+            texts.append(lambda: state_line(shell.state, context.domain.robot))
+        with blamed_on_running_package(spec_of(arguments.domain)), state_lines(*texts):
             state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and _is_over(state)))
     end.check()
     if arguments.once and stop.requested and not _is_over(state):

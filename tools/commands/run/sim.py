@@ -76,7 +76,8 @@ def _run(node: Node, robot: str, ended: Callable[[], bool], notifier: Notifier) 
     print_states = not notifier.supervised
     if print_states:
         print(f"simulated {robot} on the bus; Ctrl-C stops", flush=True)
-    with state_lines(lambda: state_line(node.driver.guard, robot), print_states):
+    texts = [lambda: state_line(node.driver.guard, robot)] if print_states else []  # else the supervisor reports it
+    with state_lines(*texts):
         node.run(ended, notifier)
 
 

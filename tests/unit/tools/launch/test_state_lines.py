@@ -34,6 +34,19 @@ def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
     assert capsys.readouterr().out == "waiting 1.5 s\nrunning\n"
 
 
+def test_several_states_are_printed_by_one_thread_so_that_no_line_cuts_another(capsys):
+    threads = set()
+
+    def text(state):
+        threads.add(threading.current_thread())
+        return state
+
+    with state_lines(lambda: text("waiting"), lambda: text("odom refused: x is nan")):
+        wait_until(lambda: threads, "a state", 10)
+    assert len(threads) == 1
+    assert capsys.readouterr().out == "waiting\nodom refused: x is nan\n"
+
+
 def test_lines_that_nobody_can_take_end_nothing(monkeypatch, capsys):
     """`tailor sim agilo | head -1`: a thread that died left a traceback and printed no later line."""
     died, written, texts = [], [], iter(["waiting"])
@@ -54,8 +67,8 @@ def _refuse():
 def test_under_a_supervisor_nothing_is_printed(capsys, tmp_path):
     assert Notifier(str(tmp_path / "socket")).supervised
     assert not SILENT.supervised
-    with state_lines(lambda: "waiting", wanted=False):
-        time.sleep(0.3)
+    with state_lines():
+        assert "state lines" not in [thread.name for thread in threading.enumerate()]
     assert capsys.readouterr().out == ""
 
 
