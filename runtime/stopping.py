@@ -6,6 +6,7 @@ A second signal of the same kind ends the process at once.
 from __future__ import annotations
 
 import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -51,3 +52,31 @@ def stoppable() -> Iterator[Stop]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def undone_before_the_end() -> Iterator[None]:
+    """Let a block that leaves nothing behind when it fails leave nothing at SIGTERM or a closing terminal either.
+
+    Where they would end the process at once, they raise KeyboardInterrupt in the block, and end the process behind it.
+    """
+    arrived: list[int] = []
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        for each in ours:
+            signal.signal(each, signal.SIG_IGN)  # another one must not interrupt the end
+        arrived.append(number)
+        raise KeyboardInterrupt
+
+    in_main = threading.current_thread() is threading.main_thread()
+    ends = (signal.SIGTERM, signal.SIGHUP)
+    ours = [number for number in ends if in_main and signal.getsignal(number) is signal.SIG_DFL]
+    for each in ours:
+        signal.signal(each, interrupt)
+    try:
+        yield
+    finally:
+        for each in ours:
+            signal.signal(each, signal.SIG_DFL)
+        for number in arrived:
+            signal.raise_signal(number)

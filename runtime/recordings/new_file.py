@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryFile
 
+from tailor.runtime.stopping import undone_before_the_end
 from tailor.schemas.errors import UsageError
 
 PROBE_BYTES = 65_536  # there must be room for: a second of a run
@@ -44,20 +45,21 @@ def check_room(folder: Path) -> None:
 
 @contextmanager
 def new_file(path: Path) -> Iterator[None]:
-    """Guard the block that creates and writes `path`; if the block fails, the file is removed.
+    """Guard the block that creates and writes `path`; if the block fails, or a signal ends it, the file is removed.
 
     Raises:
       UsageError: The file existed before, which leaves it as it is, or cannot be written.
     """
     if path.exists():  # before anything can fail, or what fails would remove a file of the user's
         raise UsageError(EXISTS.format(path))
-    try:
-        yield
-    except FileExistsError as error:
-        raise UsageError(EXISTS.format(path)) from error
-    except BaseException as error:
-        with suppress(OSError):
-            path.unlink()
-        if isinstance(error, OSError):
-            raise UsageError(f"{path}: {error.strerror}, expected a file that can be written") from error
-        raise
+    with undone_before_the_end():
+        try:
+            yield
+        except FileExistsError as error:
+            raise UsageError(EXISTS.format(path)) from error
+        except BaseException as error:
+            with suppress(OSError):
+                path.unlink()
+            if isinstance(error, OSError):
+                raise UsageError(f"{path}: {error.strerror}, expected a file that can be written") from error
+            raise

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from tailor.runtime.stopping import undone_before_the_end
 from tailor.schemas.errors import UsageError
 
 
@@ -44,8 +45,8 @@ def beside(recording: Path, ending: str) -> Path:
 def whole_output(output: Path) -> Iterator[Path]:
     """Path to write to in the block, at whose end the file takes its place, its folder made: whole, or not at all.
 
-    What ends the block, as a full disk or Ctrl-C, leaves a file of that name as it was. A device or a pipe is written
-    to as it is, never replaced by a file.
+    What ends the block, as a full disk, Ctrl-C or SIGTERM, leaves a file of that name as it was. A device or a pipe is
+    written to as it is, never replaced by a file.
 
     Raises:
       UsageError: The file cannot be written.
@@ -54,17 +55,18 @@ def whole_output(output: Path) -> Iterator[Path]:
     temporary = place.with_name(f".{os.getpid()}{place.suffix}")  # libraries choose the format by the suffix
     if place.exists() and not os.access(place, os.W_OK):
         raise UsageError(f"{output}: is read-only, expected a file that can be written")
-    try:
-        place.parent.mkdir(parents=True, exist_ok=True)
-        is_device = place.exists() and not place.is_file()
-        yield place if is_device else temporary
-        if not is_device:
-            temporary.replace(place)
-    except OSError as error:
-        raise UsageError(f"{output}: {error.strerror or error}, expected a file that can be written") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
+    with undone_before_the_end():
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            is_device = place.exists() and not place.is_file()
+            yield place if is_device else temporary
+            if not is_device:
+                temporary.replace(place)
+        except OSError as error:
+            raise UsageError(f"{output}: {error.strerror or error}, expected a file that can be written") from error
+        finally:
+            with suppress(OSError):
+                temporary.unlink()
 
 
 def check_writable(flag: str, output: Path) -> None:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 import resource
+import signal
+import subprocess
+import sys
 from contextlib import contextmanager
 from pathlib import Path
 from unittest.mock import MagicMock
@@ -25,6 +28,7 @@ from tailor.tools.figures.learned_models import reports
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.main import main
 from tailor.tools.writing.writing_track import WritingTrack
+from tests.support.injection.signals import heeded_signals
 
 GOLDEN = str(Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap")
 CHOICES = GOLDEN.replace("approach", "approach-dribble")
@@ -117,6 +121,28 @@ def test_an_interrupted_output_leaves_what_was_there(tmp_path):
     assert not interrupted.__exit__(KeyboardInterrupt, KeyboardInterrupt(), None)
     assert output.read_bytes() == b"the former one"
     assert list(tmp_path.iterdir()) == [output]
+
+
+ENDED = """
+import signal, sys
+from pathlib import Path
+from tailor.runtime.recordings.new_file import new_file
+from tailor.tools.cli.output_files import whole_output
+
+number, folder = int(sys.argv[1]), Path(sys.argv[2])
+with new_file(folder / "new.mcap"), whole_output(folder / "x.png") as whole:
+    (folder / "new.mcap").write_bytes(b"half")
+    whole.write_bytes(b"half")
+    signal.raise_signal(number)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_files_of_a_process_that_a_signal_ends_are_gone_and_the_signal_is_its_end(number, tmp_path):
+    with heeded_signals():
+        ended = subprocess.run([sys.executable, "-P", "-c", ENDED, str(int(number)), str(tmp_path)], check=False)
+    assert ended.returncode == -number
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_is_written_through(tmp_path):
