@@ -5,12 +5,11 @@ Everything is written into a temporary folder first and then moved; whoever inte
 
 from __future__ import annotations
 
-import errno
 import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from tailor.executive.robot_models import check_fit
@@ -22,14 +21,13 @@ from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names
+from tailor.tools.cli.output_folders import temporary_beside
 from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.hub.client import upload
 from tailor.tools.hub.fetching import fetched
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
 from tailor.tools.hub.place import Place
 from tailor.tools.learning.target_zoo import target_zoo
-
-NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:
@@ -46,7 +44,7 @@ def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -
     """
     if place.folder is not None and os.path.lexists(place.folder):
         raise UsageError(f"{place.folder}: exists, expected a new folder")
-    with _temporary_beside(place.folder or Path(tempfile.gettempdir()) / "push") as temporary:
+    with temporary_beside(place.folder or Path(tempfile.gettempdir()) / "push") as temporary:
         write(temporary)
         if place.folder is None:
             return upload(temporary, str(place.repository), kind, public)
@@ -67,7 +65,7 @@ def pull_models(place: Place, revision: str | None, zoo: Path | None, replace: b
       UsageError: Nothing there, a file differs from its checksum, a model is damaged or unsuitable, or the zoo has
         models of that robot.
     """
-    with _temporary_beside((zoo or Path(tempfile.gettempdir())) / "pull") as temporary:
+    with temporary_beside((zoo or Path(tempfile.gettempdir())) / "pull") as temporary:
         files = fetched(place, "model", revision, MODEL_FILES, temporary)
         models = [file for file in files if file.suffix == ".onnx" and len(file.parts) == 3]
         robots = {model.parts[0] for model in models}
@@ -89,7 +87,7 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
       UsageError: Nothing there, a file differs from its checksum, a manifest is damaged or too large, or the folder
         has a data set of that name, or something else, which `replace` does not remove.
     """
-    with _temporary_beside(data) as temporary:
+    with temporary_beside(data) as temporary:
         files = fetched(place, "dataset", revision, DATA_FILES, temporary)
         names = sorted({file.parts[0] for file in files if file.name == MANIFEST and len(file.parts) == 2})
         if not names:
@@ -105,32 +103,6 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
         for name in names:
             _swap(temporary / name, data / name)
     return [data / name for name in names]
-
-
-@contextmanager
-def _temporary_beside(target: Path) -> Iterator[Path]:
-    """A folder on the same disk as a target, from which moving is one step; removed at the end.
-
-    So are those above it that were made for it, unless something has been moved into them.
-
-    Raises:
-      UsageError: The disk is full. Copying names the file that it reads, writing none.
-    """
-    made = [parent for parent in target.parents if not parent.exists()]
-    target.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}-"))
-    folder.chmod(0o755)
-    try:
-        yield folder
-    except OSError as error:
-        if error.errno not in NO_SPACE:
-            raise
-        raise UsageError(f"{target.parent}: {error.strerror}, expected space for what is written there") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        for parent in made:
-            with suppress(OSError):
-                parent.rmdir()
 
 
 @contextmanager

@@ -7,8 +7,6 @@ A template is a text file `FILE.template` in which `${name}` and `${package}` st
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -16,6 +14,7 @@ from pathlib import Path
 from string import Template
 
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_folders import temporary_beside
 from tailor.tools.new_robot.names import check_name, package_of
 
 SUFFIX = ".template"
@@ -40,7 +39,7 @@ def write_robot(name: str, kind: str, into: Path) -> Path:
       The new folder, `into/name`.
 
     Raises:
-      UsageError: The name cannot be used, `into` is no folder, or the new folder exists.
+      UsageError: The name cannot be used, `into` is no folder, or the new folder exists or cannot be written.
     """
     check_name(name)
     folder = into / name
@@ -48,16 +47,11 @@ def write_robot(name: str, kind: str, into: Path) -> Path:
         raise UsageError(f"--into is {into}, expected an existing folder")
     if os.path.lexists(folder):
         raise UsageError(f"{folder} exists already, expected another NAME or --into DIR: nothing is overwritten")
-    unfinished = Path(tempfile.mkdtemp(prefix=f".{name}-", dir=into))
-    try:
+    with temporary_beside(folder) as unfinished:
         for path, text in rendered(name, kind).items():
             (unfinished / path).parent.mkdir(parents=True, exist_ok=True)
             (unfinished / path).write_text(text, encoding="utf-8")
-        unfinished.chmod(0o755)
         unfinished.rename(folder)
-    except BaseException:
-        shutil.rmtree(unfinished, ignore_errors=True)
-        raise
     return folder
 
 

@@ -134,6 +134,13 @@ def test_a_folder_to_write_into_must_exist(tmp_path: Path) -> None:
         write_robot("cart", "wheeled", tmp_path / "nowhere")
 
 
+def test_a_folder_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path, capsys) -> None:
+    name = "a" * 300
+    assert main(["new", "robot", name, "--into", str(tmp_path)]) == 2
+    expected = f"{tmp_path / name}: File name too long, expected a folder that can be written"
+    assert capsys.readouterr().err == f"tailor new: {expected}\n"
+
+
 def test_an_interrupted_command_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
     def broken(name: str, kind: str) -> dict[str, str]:
         return {"a": "text", "b": None}  # type: ignore[dict-item]
