@@ -19,7 +19,7 @@ from tailor.tools.viewer.live.broadcast import EventBroadcast
 from tailor.tools.viewer.live.server import MAX_PAGES, serving
 from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.recorded_events import recorded_events
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 from tests.support.browser import PROGRAM, Browser

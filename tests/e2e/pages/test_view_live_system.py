@@ -12,7 +12,7 @@ import pytest
 
 from tailor.runtime.processes.child import Child, tailor
 from tailor.schemas.messages import TickReport
-from tailor.tools.viewer.recorded_messages import timed
+from tailor.tools.viewer.timed_messages import timed
 from tests.support.browser import PROGRAM, Browser
 from tests.support.bus_system import ROOT, answers, free_endpoint
 from tests.support.patience import PATIENCE_S, wait_until

@@ -13,7 +13,7 @@ from mcap.writer import CompressionType, Writer
 from tailor.tools.benchmarks.growth.curve import Curve
 from tailor.tools.goldens.renew import Golden, record
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.recorded_events import recorded_events
 from tailor.tools.viewer.timeline import RunTimeline
 
 EPISODES = 4

@@ -19,7 +19,7 @@ from tailor.tools.cli.systems.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.page import page
-from tailor.tools.viewer.recorded_messages import DAMAGE, recorded_events
+from tailor.tools.viewer.recorded_events import DAMAGE, recorded_events
 from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.timeline import Event, RunTimeline
 

@@ -26,7 +26,7 @@ from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
 from tailor.tools.viewer.explainer import Explainer
-from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.recorded_events import recorded_events
 from tailor.tools.viewer.side_by_side import side_by_side
 from tailor.tools.viewer.timeline import RunTimeline
 

@@ -16,7 +16,7 @@ from tailor.schemas.messages import (
     TickReport,
 )
 from tailor.tools.viewer.decisions.recorded_search import RecordedSearch
-from tailor.tools.viewer.recorded_messages import Timed
+from tailor.tools.viewer.timed_messages import Timed
 
 
 @dataclass(slots=True)

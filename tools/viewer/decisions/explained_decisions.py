@@ -16,7 +16,7 @@ from tailor.tools.viewer.decisions.decision_reader import Decision, DecisionRead
 from tailor.tools.viewer.decisions.explanation_text import certified_gap_pct
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.explanations.explanation import Explanation
-from tailor.tools.viewer.recorded_messages import timed
+from tailor.tools.viewer.timed_messages import timed
 
 MAX_NAMED = 3  # actions of a sequence in a title; a word that the arm writes has dozens
 

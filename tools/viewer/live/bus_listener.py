@@ -15,7 +15,7 @@ from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop
 from tailor.schemas.errors import Rejected
 from tailor.tools.viewer.live.broadcast import EventBroadcast
-from tailor.tools.viewer.recorded_messages import EXECUTIVE
+from tailor.tools.viewer.timed_messages import EXECUTIVE
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 POLL_NS = 50_000_000  # 20 updates of the page a second

@@ -17,7 +17,7 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
 from tailor.tools.viewer.columns import packed
-from tailor.tools.viewer.recorded_messages import recorded_events
+from tailor.tools.viewer.recorded_events import recorded_events
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
 

@@ -13,7 +13,7 @@ from tailor.tools.commands.look import why
 from tailor.tools.viewer.decisions.decision_reader import DecisionReader, executed, in_force
 from tailor.tools.viewer.decisions.explained_decisions import ExplainedDecision, ended_text, explained_decisions
 from tailor.tools.viewer.decisions.explanation_text import certificate_text, certified_gap_pct
-from tailor.tools.viewer.recorded_messages import Timed
+from tailor.tools.viewer.timed_messages import Timed
 from tests.support import synthetic_run
 
 ROOT = Path(__file__).resolve().parents[4]

@@ -1,4 +1,4 @@
-"""Reads the messages of a recording with their times, and converts them into events."""
+"""Reads the messages of a recording with their times."""
 
 from __future__ import annotations
 
@@ -10,17 +10,12 @@ from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import Message, Odometry, PoseEstimate
+from tailor.schemas.messages import Message
 from tailor.schemas.packages.spec import RESERVED
 from tailor.schemas.typesystem import ros_type, type_of
-from tailor.tools.recordings.damage_notice import notice
-from tailor.tools.viewer.timeline import Event, RunTimeline
 
 EXECUTIVE = "exec/"
 SHOWN_DIGITS = 8  # of a sender, as `tailor info` shows them
-DAMAGE = "damage"  # kind of the event that states the damage of a recording
-BETTER = ("truth", "believed")  # sources of the robot's pose; with one of them the page draws no other
-SENSED = (Odometry, PoseEstimate)  # the others: most of a recording's messages, and the slowest to decode
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,29 +85,3 @@ def _check_robot(path: Path, robot: str, owners: Collection[str]) -> None:
     if robot and robot not in owners:
         known = ", ".join(sorted(set(owners).difference(RESERVED))) or "none"
         raise UsageError(f"{path}: no message of robot '{robot}', expected one of: {known}")
-
-
-def recorded_events(path: Path, timeline: RunTimeline, sender: str = "") -> Iterator[Event]:
-    """All events of a recording that the page shows, on a time axis that starts with the first message.
-
-    The damage of a damaged one is the last event, at the start of the axis.
-
-    Raises:
-      UsageError: See `timed`; the robot is that which the timeline is to show.
-    """
-    robot, damage = timeline.robot, DamageReport(complete=True)
-    trial = RunTimeline(robot=robot)
-
-    def note(found: DamageReport) -> None:
-        nonlocal damage
-        damage = found
-
-    better = any(event.kind in BETTER for t in timed(path, sender, SENSED) for event in _events_of(t, trial))
-    for t in timed(path, sender, SENSED if better else (), note, robot):
-        yield from _events_of(t, timeline)
-    if text := notice(path, damage):
-        yield Event(0.0, DAMAGE, {"text": text})
-
-
-def _events_of(t: Timed, timeline: RunTimeline) -> list[Event]:
-    return timeline.events_of(max(0.0, t.at_s), t.key, t.message)
