@@ -5,49 +5,31 @@ A new page receives the kept events first. A page that falls behind is disconnec
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from queue import Empty, Full, Queue
+from dataclasses import dataclass
 from threading import Lock
 
+from tailor.tools.viewer.columns import compact_json
+from tailor.tools.viewer.live.subscription import Subscription
 from tailor.tools.viewer.timeline import Event, is_sample
 
 KEEP_S = 600.0  # of everything. The page keeps as much (run.js)
 KEEP_EVENTS = 2000  # the newest of each kind that are older, except of what passes: hours of plans, actions and states
 WHY = "why"  # kind of the alternatives of a decision: curves, a hundred times as large as the decision itself
-MAX_WAITING = 64  # batches that a page may lag behind, about six seconds
+MAX_RECENT = 20_000  # of each kind, the newest: three times those of KEEP_S at 10 Hz; a flood has more
 BEAT = "now"  # kind of an event that is not kept
 OUTLINE = "outline "  # starts the kinds of outlines, which a moving arm sends as often as samples; the newest is kept
 
 
-class Subscription:
-    """Queue of batches for one page."""
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """An event as it was sent: for a new page the whole run is joined, while the stop button waits."""
 
-    def __init__(self, kept: str) -> None:
-        self.lost = False
-        self._waiting: Queue[str] = Queue(MAX_WAITING)
-        self._waiting.put(kept)
-
-    def put(self, batch: str) -> None:
-        """Add a batch; a full queue marks the page as lost."""
-        try:
-            self._waiting.put_nowait(batch)
-        except Full:
-            self.lost = True
-
-    def close(self) -> None:
-        """Mark the page as lost and wake its reader."""
-        self.lost = True
-        self.put("[]")
-
-    def next(self, timeout_s: float) -> str | None:
-        """The next batch, a JSON array of events; None after the timeout."""
-        try:
-            return self._waiting.get(timeout=timeout_s)
-        except Empty:
-            return None
+    at_s: float
+    kind: str
+    text: str
 
 
 class TooManyPagesError(Exception):
@@ -59,7 +41,7 @@ class EventBroadcast:
 
     def __init__(self, keep_s: float = KEEP_S) -> None:
         self._keep_s, self._forgot_s = keep_s, 0.0
-        self._events: list[Event] = []
+        self._events: list[_Kept] = []
         self._pages: set[Subscription] = set()
         self._lock = Lock()
         self.closed = False
@@ -73,9 +55,10 @@ class EventBroadcast:
         """Pass events to every page without waiting for one."""
         if not events:
             return
-        batch = encoded(events)
+        kept = [_Kept(event.at_s, event.kind, compact_json(event.json_value())) for event in events]
+        batch = _joined(kept)
         with self._lock:
-            self._events.extend(events)
+            self._events.extend(kept)
             self._forget(events[-1].at_s)
             for page in self._pages:
                 page.put(batch)
@@ -87,7 +70,7 @@ class EventBroadcast:
           at_s: Now, seconds on the time axis of the run.
           bus: Whether the viewer is connected to the bus.
         """
-        batch = encoded([Event(at_s, BEAT, {"bus": bus})])
+        batch = compact_json([Event(at_s, BEAT, {"bus": bus}).json_value()])
         with self._lock:
             for page in self._pages:
                 page.put(batch)
@@ -119,7 +102,7 @@ class EventBroadcast:
         with self._lock:
             if most is not None and self.pages >= most:
                 raise TooManyPagesError
-            page = Subscription(encoded(self._events))
+            page = Subscription(_joined(self._events))
             self._pages.add(page)
         try:
             yield page
@@ -132,17 +115,17 @@ class EventBroadcast:
         if now_s < self._forgot_s + 60:
             return
         self._forgot_s, oldest = now_s, now_s - self._keep_s
-        kept, numbers = list[Event](), Counter[str]()
+        kept, numbers = list[_Kept](), Counter[str]()
         for event in reversed(self._events):
             numbers[event.kind] += 1
-            if event.at_s >= oldest or numbers[event.kind] <= _kept_of(event.kind):
+            if numbers[event.kind] <= (MAX_RECENT if event.at_s >= oldest else _kept_of(event.kind)):
                 kept.append(event)
         self._events = kept[::-1]
 
 
-def encoded(events: Sequence[Event]) -> str:
+def _joined(events: Sequence[_Kept]) -> str:
     """Events as one line of JSON."""
-    return json.dumps([event.json_value() for event in events], allow_nan=False, separators=(",", ":"))
+    return f"[{','.join(event.text for event in events)}]"
 
 
 def _kept_of(kind: str) -> int:

@@ -15,9 +15,10 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.viewer.live.broadcast import EventBroadcast, Subscription, TooManyPagesError
+from tailor.tools.viewer.live.broadcast import EventBroadcast, TooManyPagesError
 from tailor.tools.viewer.live.stop_endpoint import PATH as STOP
 from tailor.tools.viewer.live.stop_endpoint import StopEndpoint
+from tailor.tools.viewer.live.subscription import Subscription
 
 ADDRESS = "127.0.0.1"
 OWN_NAMES = {"127.0.0.1", "localhost"}  # another Host header means DNS rebinding

@@ -22,9 +22,10 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.tools.viewer.live import broadcast as broadcast_module
 from tailor.tools.viewer.live import server
-from tailor.tools.viewer.live.broadcast import MAX_WAITING, EventBroadcast
+from tailor.tools.viewer.live.broadcast import MAX_RECENT, EventBroadcast
 from tailor.tools.viewer.live.bus_listener import BusListener
 from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.live.subscription import MAX_WAITING
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support.patience import PATIENCE_S, wait_until
 
@@ -99,6 +100,15 @@ def test_a_new_page_receives_past_and_future_events() -> None:
     assert broadcast.pages == 0
 
 
+def test_events_are_encoded_once_for_all_pages(monkeypatch) -> None:
+    """Those of ten minutes take a quarter of a second, during which the stop button of another page would wait."""
+    broadcast = EventBroadcast()
+    broadcast.publish([tick(0.0)])
+    monkeypatch.setattr(broadcast_module, "compact_json", lambda value: pytest.fail("once more"))
+    with broadcast.subscribe() as page:
+        assert json.loads(page.next(0)) == [[0.0, "tick", {"work": 1.0}]]
+
+
 def test_old_ticks_are_dropped_and_old_events_are_not() -> None:
     broadcast = EventBroadcast(keep_s=10)
     broadcast.publish([Event(0.0, "plan", {}), tick(0.0)])
@@ -127,6 +137,15 @@ def test_a_live_page_of_weeks_does_not_grow_and_a_new_one_shows_what_holds(monke
     with broadcast.subscribe() as page:
         kept = json.loads(page.next(0))
     assert [fields["k"] for _, kind, fields in kept if kind == "subgoals"] == [995, 996, 997, 998, 999]
+
+
+def test_of_a_flood_the_newest_are_kept() -> None:
+    broadcast = EventBroadcast()
+    broadcast.publish([Event(50.0, "subgoals", {"k": k}) for k in range(MAX_RECENT + 10)])
+    broadcast.publish([tick(60.0)])
+    with broadcast.subscribe() as page:
+        kept = [fields["k"] for _, kind, fields in json.loads(page.next(0)) if kind == "subgoals"]
+    assert kept == list(range(10, MAX_RECENT + 10))
 
 
 def test_the_run_after_an_hour_drops_old_ticks_too() -> None:
