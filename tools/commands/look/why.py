@@ -7,6 +7,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from tailor.tools.viewer.decisions.explanation_text import certified_gap_pct, du
 from tailor.tools.viewer.event_fields import number
 from tailor.tools.viewer.explainer import fields_of
 from tailor.tools.viewer.explanations.explanation import Explanation
+
+MAX_ROWS = 60  # of a picture: one of an hour has 480, takes minutes and gigabytes, and no browser shows it
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     output: Path | None = arguments.output
     if output is not None:
         check_output("--output", output, (".png", ".html"))
-    free, values, drawn = False, [], []
+    free, values, drawn = False, list[dict[str, Any]](), list[tuple[str, Explanation]]()
     for explained in explained_decisions(arguments.recording, arguments.at, arguments.sender):
         free = free or explained.explanation is not None
         if arguments.json:
@@ -90,17 +93,21 @@ def _json_value(explained: ExplainedDecision) -> dict[str, Any]:
 
 
 def _draw(explained: Sequence[tuple[str, Explanation]], output: Path) -> None:
-    """Write the picture, or a page that contains it."""
+    """Write the picture, or a page that contains it, of the first decisions that fit."""
     from tailor.tools.figures.alternatives import draw_alternatives  # imports matplotlib, which is slow
     from tailor.tools.figures.report_page import image, page
 
+    rows = accumulate(len(each.parameters) for _, each in explained)
+    drawn = explained[: max(1, sum(each <= MAX_ROWS for each in rows))]
     with whole_output(output) as whole:
         if output.suffix.lower() == ".png":
-            draw_alternatives(explained, whole)
+            draw_alternatives(drawn, whole)
         else:
             with tempfile.TemporaryDirectory() as folder:
                 picture = Path(folder) / "alternatives.png"
-                draw_alternatives(explained, picture)
+                draw_alternatives(drawn, picture)
                 body = [image(picture, "predicted durations over the free parameters")]
             whole.write_text(page("Why these subgoals", body), encoding="utf-8")
     print(output, file=sys.stderr)  # stdout may hold JSON
+    if len(drawn) < len(explained):
+        print(f"the first {len(drawn)} of {len(explained)} decisions are drawn; --at T draws one", file=sys.stderr)

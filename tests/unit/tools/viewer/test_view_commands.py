@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -21,6 +22,7 @@ from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.tools.commands.look import compare, cut, picture, scene, view, why
+from tailor.tools.figures import alternatives
 from tailor.tools.scenes import robot_scenes
 from tests.support import synthetic_run
 
@@ -230,6 +232,20 @@ def test_why_names_the_part_that_cannot_be_loaded(recording) -> None:
 def test_why_refuses_a_picture_of_another_kind_before_it_reads(recording, tmp_path) -> None:
     with pytest.raises(UsageError, match=r"\.png or \.html"):
         run(why, tmp_path / "missing.mcap", "-o", "why.gif")
+
+
+def test_a_picture_has_the_first_decisions_that_fit_and_a_line_names_the_others(tmp_path, monkeypatch, capsys) -> None:
+    """One of an hour of soccer took minutes and gigabytes, and no browser shows it."""
+    drawn = []
+    monkeypatch.setattr(
+        alternatives, "draw_alternatives", lambda explained, path: (drawn.append(explained), path.touch())
+    )
+    decision = ("3.8 s: approachBall", SimpleNamespace(parameters=(1, 2)))
+    why._draw([decision] * (why.MAX_ROWS // 2 + 5), tmp_path / "why.png")
+    why._draw([decision] * 3, tmp_path / "why.png")
+    assert [len(each) for each in drawn] == [why.MAX_ROWS // 2, 3]
+    named = "the first 30 of 35 decisions are drawn; --at T draws one"
+    assert capsys.readouterr().err.splitlines() == [f"{tmp_path}/why.png", named, f"{tmp_path}/why.png"]
 
 
 def test_a_recording_of_any_name_is_shown_drawn_compared_and_copied(recording, tmp_path, capsys) -> None:
