@@ -76,8 +76,8 @@ def _configure_costs(group: argparse._ArgumentGroup) -> None:
     add("-S", "--seed", type=int, default=0, help="random seed (default 0)")
     add("-T", "--time-limit", type=_minutes, default=None, metavar="MINUTES",
         help="time limit of the search in minutes, fractions allowed, or 'unlimited' (default)")  # fmt: skip
-    add("--memory-limit", type=_megabytes, default=512, metavar="MB",
-        help="memory limit of the search, or 'unlimited' (default 512)")  # fmt: skip
+    add("--memory-limit", type=_megabytes, default=448, metavar="MB",
+        help="memory limit of the search, or 'unlimited' (default 448: with that of Python less than 512)")  # fmt: skip
 
 
 def _configure_planners(group: argparse._ArgumentGroup) -> None:
