@@ -55,10 +55,10 @@ def stoppable() -> Iterator[Stop]:
 
 
 @contextmanager
-def undone_before_the_end() -> Iterator[None]:
-    """Let a block that leaves nothing behind when it fails leave nothing at SIGTERM or a closing terminal either.
+def interrupting(*numbers: signal.Signals) -> Iterator[list[int]]:
+    """Let signals that would end the process at once raise KeyboardInterrupt in a block; yields those that arrived.
 
-    Where they would end the process at once, they raise KeyboardInterrupt in the block, and end the process behind it.
+    After the first one they are ignored until the block has ended. Other threads than the main one have none.
     """
     arrived: list[int] = []
 
@@ -69,14 +69,26 @@ def undone_before_the_end() -> Iterator[None]:
         raise KeyboardInterrupt
 
     in_main = threading.current_thread() is threading.main_thread()
-    ends = (signal.SIGTERM, signal.SIGHUP)
-    ours = [number for number in ends if in_main and signal.getsignal(number) is signal.SIG_DFL]
+    ours = [number for number in numbers if in_main and signal.getsignal(number) is signal.SIG_DFL]
     for each in ours:
         signal.signal(each, interrupt)
     try:
-        yield
+        yield arrived
     finally:
         for each in ours:
             signal.signal(each, signal.SIG_DFL)
+
+
+@contextmanager
+def undone_before_the_end() -> Iterator[None]:
+    """Let a block that leaves nothing behind when it fails leave nothing at SIGTERM or a closing terminal either.
+
+    Where they would end the process at once, they interrupt the block, and end the process behind it.
+    """
+    arrived = list[int]()
+    try:
+        with interrupting(signal.SIGTERM, signal.SIGHUP) as arrived:
+            yield
+    finally:
         for number in arrived:
             signal.raise_signal(number)

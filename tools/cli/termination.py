@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import signal
 import sys
-import threading
 from collections.abc import Callable
-from types import FrameType
+
+from tailor.runtime.stopping import interrupting
 
 TERMINATED = 143  # exit code, as a shell has it
 
@@ -21,23 +21,11 @@ def interrupted_by_sigterm(run: Callable[[], int], name: str) -> int:
       run: A command.
       name: Its name, for the one line about an end of which the command itself says nothing.
     """
-    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) != signal.SIG_DFL:
-        return run()
-    arrived = False
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        nonlocal arrived
-        arrived = True
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # another one must not interrupt the end in order
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, interrupt)
-    try:
-        code = run()
-    except KeyboardInterrupt:
-        if not arrived:
-            raise
-        print(f"{name}: ended by SIGTERM", file=sys.stderr)
-    finally:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    with interrupting(signal.SIGTERM) as arrived:
+        try:
+            code = run()
+        except KeyboardInterrupt:
+            if not arrived:
+                raise
+            print(f"{name}: ended by SIGTERM", file=sys.stderr)
     return TERMINATED if arrived else code
