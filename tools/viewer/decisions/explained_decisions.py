@@ -51,9 +51,11 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
     """
     reader = DecisionReader()
     found = reader.decisions(timed(recording, sender, read=lambda damage: warn(recording, damage)))
-    decisions = (
-        list(executed(found)) if at_s is None else [each for each in [in_force(found, at_s)] if each is not None]
-    )
+    if at_s is None:
+        decisions = list(executed(found))
+    else:
+        newest = in_force(found, at_s)
+        decisions = [] if newest is None else [newest]
     if not decisions:
         raise UsageError(f"{recording}: {_no_decision(reader, at_s)}")
     explainer = Explainer()

@@ -60,8 +60,8 @@ class BusListener:
         events: list[Event] = []
         now = Instant(now_ns, self._wall())
         for raw in self._intake.drain():
-            message = message_of(raw)
-            if message is not None and self._wanted(raw):
+            message = message_of(raw) if self._wanted(raw) else None
+            if message is not None:
                 events += self._timeline.events_of(self._at_s(raw, now), raw.key, message)
         self._previous = now
         now_s = 0.0 if self._began_ns is None else (now_ns - self._began_ns) / 1e9
