@@ -69,7 +69,7 @@ def closure(orderings: Iterable[Pair]) -> tuple[Pair, ...]:
     for middle in tuple(after):
         beyond = after[middle]
         after.update((i, later | beyond) for i, later in after.items() if later >> middle & 1)
-    return tuple((i, j) for i in sorted(after) for j in range(after[i].bit_length()) if after[i] >> j & 1)
+    return tuple((i, j) for i in sorted(after) for j in bits_of(after[i]))
 
 
 def scheduled_bounds(plan: Plan) -> tuple[tuple[int | None, ...], ...]:
