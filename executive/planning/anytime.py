@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from tailor.executive.interfaces.budget import Budget
+from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
@@ -71,7 +71,7 @@ class AnytimeSearch:
         return None
 
     def _run(self) -> Iterator[Result | None]:
-        while (first := self._first.advance(_One())) is None:
+        while (first := self._first.advance(CheckBudget(1))) is None:
             yield None
         self.best = first
         if first.plan is None:
@@ -144,14 +144,3 @@ class _Bound:
     def _exact(self, value: float) -> float:
         """A makespan in whole units of the time grid: durations may differ by a nanosecond."""
         return self._task.grid.units(value) if self._measure == "makespan" and self._task.temporal else value
-
-
-class _One:
-    """Grants a single check."""
-
-    granted = 0
-
-    def spent(self) -> bool:
-        """See `Budget`."""
-        self.granted += 1
-        return self.granted > 1
