@@ -8,11 +8,16 @@ from typing import NamedTuple
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import GroundCondition
+from tailor.executive.planning.pddl.language import When
 from tailor.executive.planning.structures.connectives import conjunction
 
 Span = tuple[int, int]  # first and last moment: 0 is the action's start, 1 its end
-MOMENTS: dict[str, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}
-INSTANT: Span = (0, 0)  # span of every condition and effect if actions take no time
+_SPANS: dict[When, Span] = {"start": (0, 0), "over": (0, 1), "end": (1, 1)}
+
+
+def span_of(when: When, temporal: bool) -> Span:
+    """Span of a condition or effect; if actions take no time (not `temporal`) all are at once."""
+    return _SPANS[when] if temporal else (0, 0)
 
 
 class GroundEffect(NamedTuple):  # a tuple: grounding makes and compares thousands

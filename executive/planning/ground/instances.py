@@ -9,13 +9,12 @@ from typing import TypeAlias, TypeVar
 from tailor.executive.planning.ground.durations import MAX_NUMBER, duration_range, evaluate, range_ns
 from tailor.executive.planning.ground.goal_grounding import PORTION_PARTS, Portions
 from tailor.executive.planning.ground.ground_action import (
-    INSTANT,
-    MOMENTS,
     GroundAction,
     GroundEffect,
     Span,
     by_span,
     external_conditions,
+    span_of,
 )
 from tailor.executive.planning.ground.ground_formula import (
     Binding,
@@ -28,7 +27,7 @@ from tailor.executive.planning.ground.ground_formula import (
     negation,
 )
 from tailor.executive.planning.pddl.formula_text import format_atom, format_number
-from tailor.executive.planning.pddl.language import Action, Condition, When
+from tailor.executive.planning.pddl.language import Action, Condition
 from tailor.executive.planning.structures.connectives import FALSE, conjuncts
 
 Conditions: TypeAlias = tuple[tuple[GroundCondition, Span], ...]
@@ -92,10 +91,6 @@ def instance(
     )
 
 
-def _span(when: When, temporal: bool) -> Span:
-    return MOMENTS[when] if temporal else INSTANT
-
-
 def _conditions(
     conditions: tuple[Condition, ...], binding: Binding, portions: Portions
 ) -> Generator[None, None, Conditions | None]:
@@ -109,7 +104,7 @@ def _conditions(
         if result == FALSE:
             return None
         for part in conjuncts(result):
-            grounded.append((part, _span(condition.when, portions.world.temporal)))
+            grounded.append((part, span_of(condition.when, portions.world.temporal)))
     spans = {span for _, span in grounded}
     if any(contradictory(part for part, own in grounded if own == span) for span in spans):
         return None
@@ -120,7 +115,7 @@ def _effects(schema: Action, binding: Binding, portions: Portions) -> Generator[
     world, facts = portions.world, portions.facts
     effects: dict[GroundEffect, None] = {}
     for effect in schema.effects:
-        moment = _span(effect.when, world.temporal)[0]
+        moment = span_of(effect.when, world.temporal)[0]
         facts.limit.depth += bool(effect.variables)
         for inner in bindings(effect.variables, binding, world):
             if effect.variables and portions.is_due():

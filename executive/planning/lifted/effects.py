@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
-from tailor.executive.planning.ground.ground_action import INSTANT, MOMENTS, Span
+from tailor.executive.planning.ground.ground_action import Span, span_of
 from tailor.executive.planning.ground.instances import excluding
 from tailor.executive.planning.lifted.formula import LiftedFormula, LiftedLiteral, equality
 from tailor.executive.planning.lifted.lifter import PORTION_STEPS, Lifter, Names, Paced
-from tailor.executive.planning.pddl.language import Action, When
+from tailor.executive.planning.pddl.language import Action
 from tailor.executive.planning.structures.connectives import FALSE, TRUE, conjunction, disjunction
 
 Spanned = tuple[tuple[LiftedFormula, Span], ...]
@@ -36,11 +36,6 @@ class LiftedEffect(NamedTuple):
     moment: int
     guards: tuple[Guard, ...] = ()
     apart: Pairs = ()
-
-
-def span_of(when: When, durative: bool) -> Span:
-    """First and last moment of a condition or effect."""
-    return MOMENTS[when] if durative else INSTANT
 
 
 def lifted_effects(

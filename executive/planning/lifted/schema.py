@@ -15,9 +15,9 @@ from tailor.executive.planning.ground.durations import (
     numeric_steps,
     range_ns,
 )
-from tailor.executive.planning.ground.ground_action import Span
+from tailor.executive.planning.ground.ground_action import Span, span_of
 from tailor.executive.planning.ground.ground_formula import GroundingLimit, StaticWorld
-from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects, span_of
+from tailor.executive.planning.lifted.effects import LiftedEffect, Spanned, lifted_effects
 from tailor.executive.planning.lifted.formula import Equality, LiftedFormula
 from tailor.executive.planning.lifted.lifter import Lifter, Paced
 from tailor.executive.planning.pddl.language import Action, Function, Number, Numeric, Operation, Typed
