@@ -6,7 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tailor.executive.planning import Settings, validate
-from tailor.executive.planning.semantics.state import Objects, fact_of, holds
+from tailor.executive.planning.pddl.language import fact_of
+from tailor.executive.planning.semantics.state import Objects, holds
 from tests.property.test_planning_lifted import DURATIVE, tasks
 from tests.support.planning.planning_problems import read, solve
 

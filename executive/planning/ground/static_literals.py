@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
-from tailor.executive.planning.pddl.language import And, Atom, Formula, Literal, Not
+from tailor.executive.planning.pddl.language import And, Atom, Formula, Literal, Not, fact_of
 
 
 def static_literals(formulas: Iterable[Formula], binding: Binding, world: StaticWorld) -> tuple[Literal, ...]:
@@ -19,7 +18,7 @@ def static_literals(formulas: Iterable[Formula], binding: Binding, world: Static
         if isinstance(part, And):
             pending += part.parts
         elif isinstance(inner, Atom) and inner.predicate in world.static:
-            fact: Fact = (inner.predicate, *(binding.get(term, term) for term in inner.terms))
-            if Literal(fact, positive) not in literals:
-                literals.append(Literal(fact, positive))
+            literal = Literal(fact_of(inner, binding), positive)
+            if literal not in literals:
+                literals.append(literal)
     return tuple(literals)

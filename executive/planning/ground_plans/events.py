@@ -13,7 +13,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground_plans.guards import Guards
 from tailor.executive.planning.ground_plans.mentions import Changed, by_predicate, chosen, mentioned, terms_of
-from tailor.executive.planning.pddl.language import Action, Effect
+from tailor.executive.planning.pddl.language import Action, Effect, fact_of
 from tailor.executive.planning.pddl.problem import Problem, TimedLiteral
 from tailor.executive.planning.structures.orderings import FIRST
 
@@ -95,7 +95,7 @@ def _changes(part: _Moments, world: StaticWorld, guards: Guards | None = None) -
             for inner in bindings(effect.variables, part.binding, world):
                 happens = _happens(effect, inner, part, guards)
                 if happens is not False:
-                    fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
+                    fact = fact_of(effect.atom, inner)
                     changes[effect.positive].add(fact)
                     if happens:
                         certain.add(fact)

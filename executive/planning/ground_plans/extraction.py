@@ -13,7 +13,7 @@ from tailor.executive.planning.ground.static_literals import static_literals
 from tailor.executive.planning.ground_plans.events import events_of
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.ground_plans.separation import Schedule, separated
-from tailor.executive.planning.pddl.language import Action, Literal
+from tailor.executive.planning.pddl.language import Action, Literal, fact_of
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work
@@ -137,8 +137,8 @@ def _static_guard(schema: Action, binding: Binding, achieved: Literal, world: St
         if (effect.atom.predicate, effect.positive) == (achieved.fact[0], achieved.positive):
             formulas = [condition.formula for condition in effect.condition]
             for inner in bindings(effect.variables, binding, world):
-                fact: Fact = (effect.atom.predicate, *(inner.get(term, term) for term in effect.atom.terms))
-                static = static_literals(formulas, inner, world)
-                if fact == achieved.fact and all((x.fact in world.facts) == x.positive for x in static):
-                    return static
+                if fact_of(effect.atom, inner) == achieved.fact:
+                    static = static_literals(formulas, inner, world)
+                    if all((x.fact in world.facts) == x.positive for x in static):
+                        return static
     return ()

@@ -43,6 +43,11 @@ class Atom:
     terms: tuple[str, ...]
 
 
+def fact_of(atom: Atom, binding: Mapping[str, str]) -> Fact:
+    """The ground fact that an atom becomes with these objects for its variables."""
+    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
+
+
 @dataclass(frozen=True, slots=True)
 class Equal:
     """Two terms name the same object."""

@@ -7,12 +7,12 @@ import math
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.formula_size import parts_of
 from tailor.executive.planning.pddl.formula_text import format_atom
-from tailor.executive.planning.pddl.language import Action, Domain, Effect
+from tailor.executive.planning.pddl.language import Action, Domain, Effect, fact_of
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import Plan
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.semantics.large_formulas import holding
-from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
+from tailor.executive.planning.semantics.state import Binding, Objects, State
 
 MAX_APPLIED = 10_000  # parts of the effects of an executed action, applied in one tick: some milliseconds
 

@@ -6,11 +6,11 @@ from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from tailor.executive.planning.pddl.language import Domain, Literal
+from tailor.executive.planning.pddl.language import Domain, Literal, fact_of
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.semantics.simulation import Event, Requirement, simulate
-from tailor.executive.planning.semantics.state import Objects, fact_of
+from tailor.executive.planning.semantics.state import Objects
 
 LINKS = 4  # as much work as the simulation of one step
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.pddl.language import Action, And, Atom, Domain, Equal, Formula, Literal, Not
+from tailor.executive.planning.pddl.language import Action, And, Atom, Domain, Equal, Formula, Literal, Not, fact_of
 from tailor.executive.planning.plans.plan import GOAL, Step
 from tailor.executive.planning.plans.portions import Work
-from tailor.executive.planning.semantics.state import Binding, Objects, fact_of
+from tailor.executive.planning.semantics.state import Binding, Objects
 
 
 class NotClassical(Exception):

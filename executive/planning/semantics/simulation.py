@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from tailor.executive.planning.pddl.language import Action, Domain, Effect, Formula, Literal, Not, When
+from tailor.executive.planning.pddl.language import Action, Domain, Effect, Formula, Literal, Not, When, fact_of
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Plan
 from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.semantics.large_formulas import holding, supporting
-from tailor.executive.planning.semantics.state import Binding, Objects, State, fact_of
+from tailor.executive.planning.semantics.state import Binding, Objects, State
 
 
 @dataclass(frozen=True, slots=True)

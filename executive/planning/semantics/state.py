@@ -21,6 +21,7 @@ from tailor.executive.planning.pddl.language import (
     Quantified,
     Typed,
     When,
+    fact_of,
 )
 from tailor.executive.planning.pddl.problem import Problem
 
@@ -93,11 +94,6 @@ class Objects:
         self.spent["parts"] += parts
         if self.spent["parts"] > self.most_parts:
             raise TooLargeError(f"its quantifiers have more than {self.most_parts:.0f} instances, too many to check")
-
-
-def fact_of(atom: Atom, binding: Binding) -> Fact:
-    """The atom's ground fact."""
-    return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
 
 
 def holds(formula: Formula, binding: Binding, state: State, objects: Objects) -> bool:
