@@ -49,14 +49,14 @@ class LiftedSpace(PlanSpace[LiftedPlan]):
 
     def extract(self, plan: LiftedPlan) -> Plan:
         """See `PlanSpace`; the bindings are lines as VHPOP prints them."""
-        task, completion = self._task, self._completion(plan)
+        completion = self._completion(plan)
         assert completion is not None
         bindings, orderings = completion
         names = _names(plan, bindings)
-        frame = Frame(names, orderings, task.first_node, task.moments, self._ground.grid)
+        frame = Frame(names, orderings, self._ground)
         order = {step.id: n for n, step in enumerate(frame.steps())}
         links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
-        return frame.plan(self._ground.problem, links, plan.bindings.lines())
+        return frame.plan(links, plan.bindings.lines())
 
     def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:
         """Objects for all variables and a schedule with them, of several the shortest; None if there are none."""
@@ -83,7 +83,7 @@ class LiftedSpace(PlanSpace[LiftedPlan]):
 
     def _links(self, plan: LiftedPlan, bindings: Bindings) -> Iterator[Link]:
         for cell in cells_of(plan.links):
-            producer, consumer = self._task.step_of(cell.producer), self._task.step_of(cell.first)
+            producer, consumer = self._ground.step_of(cell.producer), self._ground.step_of(cell.first)
             yield Link(producer, _ground(cell.literal, bindings), consumer)
 
 

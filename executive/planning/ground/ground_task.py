@@ -57,6 +57,10 @@ class GroundTask:
         beyond = node - self.first_node
         return 1 + beyond // self.moments if beyond >= 0 else 0
 
+    def node_of(self, step: int) -> int:
+        """The first node of a step."""
+        return self.first_node + (step - 1) * self.moments
+
     def has_alternatives_over_all(self) -> bool:
         """Whether an action has a condition over all with alternatives, of which any may hold at any time.
 

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning.ground.durations import TimeGrid
 from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld, bindings
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground.static_literals import static_literals
@@ -14,7 +13,6 @@ from tailor.executive.planning.ground_plans.events import events_of
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.ground_plans.separation import Schedule, separated
 from tailor.executive.planning.pddl.language import Action, Literal, fact_of
-from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.portions import Work
 from tailor.executive.planning.structures.linked_list import cells_of
@@ -24,54 +22,50 @@ from tailor.executive.planning.structures.temporal_network import TemporalNetwor
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The actions of a finished plan, with the layout of their nodes in its orderings."""
+    """The actions of a finished plan of a task, and the orderings of their nodes."""
 
     names: tuple[Fact, ...]
     orderings: Orderings
-    first_node: int
-    moments: int  # nodes per step
-    grid: TimeGrid
+    task: GroundTask
 
     def steps(self) -> tuple[Step, ...]:
         """The steps by start time; of simultaneous ones the newest first, as VHPOP prints them."""
-        times, temporal = self.orderings.earliest(), self.moments == 2
+        times, grid, temporal = self.orderings.earliest(), self.task.grid, self.task.temporal
         steps = []
         for number, name in enumerate(self.names, 1):
-            node = self.first_node + (number - 1) * self.moments
-            duration = self.grid.seconds(times[node + 1] - times[node]) if temporal else 1.0
-            start = self.grid.seconds(times[node]) if temporal else float(times[node])
+            node = self.task.node_of(number)
+            duration = grid.seconds(times[node + 1] - times[node]) if temporal else 1.0
+            start = grid.seconds(times[node]) if temporal else float(times[node])
             steps.append(Step(number, name, start, duration))
         return tuple(sorted(steps, key=lambda step: (step.start, -step.id)))
 
     def pairs(self) -> Iterator[tuple[int, int]]:
         """The pairs (i, j) of steps where i must end before j starts."""
-        late, count = self.orderings.late, len(self.names)
-        for i in range(count):
-            after = late[self.first_node + i * self.moments + self.moments - 1]
-            for j in range(count):
-                if i != j and after >> (self.first_node + j * self.moments) & 1:
-                    yield i + 1, j + 1
+        nodes = [(step, self.task.node_of(step)) for step in range(1, len(self.names) + 1)]
+        for i, first in nodes:
+            after = self.orderings.late[first + self.task.moments - 1]
+            yield from ((i, j) for j, node in nodes if i != j and after >> node & 1)
 
     def bounds(self) -> tuple[tuple[int | None, ...], ...]:
         """The temporal network's bounds without the nodes of the goal and of timed literals; () without durations."""
         if not isinstance(self.orderings, TemporalNetwork):
             return ()
         bounds = self.orderings.bounds()  # without the goal's row and column
-        kept = [0, *range(self.first_node - 1, len(bounds))]
+        kept = [0, *range(self.task.first_node - 1, len(bounds))]
         return tuple(tuple(bounds[i][j] for j in kept) for i in kept)
 
-    def plan(self, problem: Problem, links: Iterable[Link], bindings: tuple[str, ...] = ()) -> Plan:
+    def plan(self, links: Iterable[Link], bindings: tuple[str, ...] = ()) -> Plan:
         """The plan, each step as early as the orderings allow."""
-        durative = isinstance(self.orderings, TemporalNetwork)
+        task = self.task
         return Plan(
-            problem.name,
-            problem.initial,
+            task.problem.name,
+            task.problem.initial,
             self.steps(),
             tuple(links),
             tuple(self.pairs()),
-            durative,
+            task.temporal,
             self.bounds(),
-            self.grid.unit_s,
+            task.grid.unit_s,
             bindings,
         )
 
@@ -90,8 +84,7 @@ def scheduled(orderings: Orderings, names: tuple[Fact, ...], task: GroundTask, w
         from tailor.executive.planning.semantics.state import Objects
         from tailor.executive.planning.semantics.validator import validation
 
-        frame = Frame(names, network, task.first_node, task.moments, task.grid)
-        return validation(frame.plan(task.problem, ()), world.domain, Objects(task.problem))
+        return validation(Frame(names, network, task).plan(()), world.domain, Objects(task.problem))
 
     return separated(orderings, events_of(names, task.problem, world, orderings.late), simulated)
 
@@ -109,8 +102,8 @@ def extract(plan: PartialPlan, task: GroundTask, world: StaticWorld) -> Plan:
     """The finished plan of a ground search; there is a schedule of it."""
     found = schedule(plan, task, world)
     assert found is not None
-    frame = Frame(_names(plan), found.orderings, task.first_node, task.moments, task.grid)
-    return frame.plan(task.problem, _links(plan, task, world, frame.steps()))
+    frame = Frame(_names(plan), found.orderings, task)
+    return frame.plan(_links(plan, task, world, frame.steps()))
 
 
 def _links(plan: PartialPlan, task: GroundTask, world: StaticWorld, steps: tuple[Step, ...]) -> Iterator[Link]:

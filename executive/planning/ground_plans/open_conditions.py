@@ -84,7 +84,7 @@ def _by_old_step(
     step = task.step_of(node)
     if step == 0 or plan.steps[step - 1].simple:
         return [_linked(task, plan, flaw, literal, node, orderings)]
-    start = task.first_node + (step - 1) * task.moments
+    start = task.node_of(step)
     return [
         _linked(task, _with_conditions(plan, effect.conditions, start), flaw, literal, node, orderings)
         for effect in plan.steps[step - 1].effects

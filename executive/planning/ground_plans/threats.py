@@ -44,8 +44,7 @@ def refine_threat(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[P
 
 def separations(task: GroundTask, plan: PartialPlan, threat: Threat) -> list[PartialPlan]:
     """Plans in which the condition of the threatening (conditional) effect is made false."""
-    first = task.first_node
-    start = first + (threat.node - first) // task.moments * task.moments
+    start = task.node_of(task.step_of(threat.node))
     children = []
     for (begin, end), condition in by_span(threat.conditions).items():
         cell = OpenCondition(negation(condition), start + begin, start + end, plan.open)

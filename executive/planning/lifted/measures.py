@@ -28,7 +28,7 @@ class LiftedMeasures:
 
     def step(self, condition: LiftedCondition) -> int:
         """See `FlawMeasures`."""
-        return self._task.step_of(condition.first)
+        return self._task.ground.step_of(condition.first)
 
     def static(self, condition: LiftedCondition) -> bool:
         """See `FlawMeasures`; false for a disjunction."""

@@ -52,29 +52,11 @@ class LiftedTask:
     values: dict[LiteralPattern, Value]
     placed: dict[tuple[Schema, int], tuple[PlacedEffect, ...]] = field(default_factory=dict)
 
-    @property
-    def first_node(self) -> int:
-        """The node of the first step."""
-        return self.ground.first_node
-
-    @property
-    def moments(self) -> int:
-        """Number of nodes per step."""
-        return self.ground.moments
-
-    def step_of(self, node: int) -> int:
-        """As of the ground task."""
-        return self.ground.step_of(node)
-
-    def node_of(self, step: int) -> int:
-        """The first node of a step."""
-        return self.first_node + (step - 1) * self.moments
-
     def effects_of(self, schema: Schema, step: int) -> tuple[PlacedEffect, ...]:
         """The effects of a schema as a step of a plan."""
         placed = self.placed.get((schema, step))
         if placed is None:
-            node = self.node_of(step)
+            node = self.ground.node_of(step)
             placed = tuple(PlacedEffect(node + e.moment, step, e.literal.of_step(step), e) for e in schema.effects)
             self.placed[schema, step] = placed
         return placed

@@ -39,7 +39,7 @@ def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
         return False
     if not opposing(link.literal, threat.effect, plan.bindings):
         return False
-    step = task.step_of(node)
+    step = task.ground.step_of(node)
     return (
         threat.effect.positive
         or step == 0

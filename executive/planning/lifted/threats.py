@@ -30,9 +30,9 @@ def separations(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> Ite
         bindings = plan.bindings.separated(a, b)
         if bindings is not None:
             yield plan._replace(bindings=bindings)
-    step = task.step_of(threat.node)
+    step = task.ground.step_of(threat.node)
     for guard in threat.guards:
-        first, last = (task.node_of(step) + moment for moment in guard.span)
+        first, last = (task.ground.node_of(step) + moment for moment in guard.span)
         child = opened(plan, of_step(guard.fails, step), first, last)
         if child is not None:
             yield child
