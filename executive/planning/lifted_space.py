@@ -17,7 +17,7 @@ from tailor.executive.planning.lifted.task import LiftedTask
 from tailor.executive.planning.lifted.threats import refine_threat
 from tailor.executive.planning.pddl.language import Literal
 from tailor.executive.planning.plan_space import PlanSpace
-from tailor.executive.planning.plans.plan import Link, Plan
+from tailor.executive.planning.plans.plan import Link, Plan, by_consumer
 from tailor.executive.planning.settings import Settings
 from tailor.executive.planning.structures.linked_list import cells_of
 from tailor.executive.planning.structures.orderings import Orderings
@@ -52,10 +52,8 @@ class LiftedSpace(PlanSpace[LiftedPlan]):
         completion = self._completion(plan)
         assert completion is not None
         bindings, orderings = completion
-        names = _names(plan, bindings)
-        frame = Frame(names, orderings, self._ground)
-        order = {step.id: n for n, step in enumerate(frame.steps())}
-        links = sorted(self._links(plan, bindings), key=lambda link: order.get(link.consumer, len(order)))
+        frame = Frame(_names(plan, bindings), orderings, self._ground)
+        links = by_consumer(self._links(plan, bindings), frame.steps())
         return frame.plan(links, plan.bindings.lines())
 
     def _completion(self, plan: LiftedPlan) -> tuple[Bindings, Orderings] | None:

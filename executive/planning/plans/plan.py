@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
@@ -28,6 +29,12 @@ class Link:
     producer: int
     literal: Literal
     consumer: int
+
+
+def by_consumer(links: Iterable[Link], steps: Iterable[Step]) -> tuple[Link, ...]:
+    """Links in the order of their consumers, the goal's last; those of one consumer stay in theirs."""
+    position = {step.id: n for n, step in enumerate(steps)}
+    return tuple(sorted(links, key=lambda link: position.get(link.consumer, len(position))))
 
 
 GOAL = -1  # consumer of the causal links that support the goal

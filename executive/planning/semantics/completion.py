@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.plan import Link, Plan
+from tailor.executive.planning.plans.plan import Plan, by_consumer
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.schedule import scheduled_bounds, scheduling
 from tailor.executive.planning.semantics.links import linking, orderings_for
@@ -52,7 +52,7 @@ def _completion(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | str
     absent = [link for link in needed if (link.literal, link.consumer) not in supported]
     changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
     changing |= {timed.literal.fact[0] for timed in problem.timed}
-    linked = replace(located, links=_by_consumer(located, (*absent, *plan.links)))
+    linked = replace(located, links=by_consumer((*absent, *plan.links), located.steps))
     keeps = located.steps == plan.steps and not any(link.literal.fact[0] in changing for link in absent)
     if not keeps or not (yield from _protects(linked, domain, objects)):
         anew = yield from relinking(located, domain, objects)
@@ -85,9 +85,3 @@ def _located(plan: Plan, domain: Domain, problem: Problem) -> Plan:
     steps = tuple(replace(step, duration=0.0) if step.action[0] in timeless else step for step in plan.steps)
     plan = replace(plan, problem=problem.name, initial=problem.initial, durative=durative)
     return plan if steps == plan.steps else replace(plan, steps=steps, links=(), orderings=(), bounds=())
-
-
-def _by_consumer(plan: Plan, links: tuple[Link, ...]) -> tuple[Link, ...]:
-    """Links in the order of their consumers, the goal's last."""
-    position = {step.id: n for n, step in enumerate(plan.steps)}
-    return tuple(sorted(links, key=lambda link: position.get(link.consumer, len(position))))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
-from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step
+from tailor.executive.planning.plans.plan import GOAL, Link, Plan, Step, by_consumer
 from tailor.executive.planning.plans.portions import Work, completed_work
 from tailor.executive.planning.plans.schedule import closure, scheduling
 from tailor.executive.planning.semantics.links import linking, orderings_for
@@ -134,9 +134,7 @@ def _scheduled(
     else:  # all pairs agree with the order of the steps
         starts, orderings = yield from scheduling([step.id for step in steps], pairs)
         steps = tuple(sorted((replace(s, start=starts[s.id]) for s in steps), key=lambda s: s.start))
-    position = {step.id: n for n, step in enumerate(steps)}
-    links = tuple(sorted(links, key=lambda link: position.get(link.consumer, len(steps))))
-    linked = replace(bare, steps=steps, links=links, orderings=orderings)
+    linked = replace(bare, steps=steps, links=by_consumer(links, steps), orderings=orderings)
     yield
     return None if (yield from validation(linked, domain, objects)) else linked
 
