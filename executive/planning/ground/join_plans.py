@@ -103,11 +103,11 @@ class JoinPlan:
 
 
 class _Planner:
-    """Builds one plan; `bound` are the variables bound so far, `left` the atoms not yet matched."""
+    """Builds one plan in a world; `bound` are the variables bound so far, `left` the atoms not yet matched."""
 
     def __init__(self, rule: Rule, index: FactIndex, world: StaticWorld) -> None:
         self._index = index
-        self._world = world
+        self.world = world
         self._slots = {variable.name: n for n, variable in enumerate(rule.variables)}
         self._variables = rule.variables
         self._tests = list(rule.tests)
@@ -172,15 +172,10 @@ class _Planner:
         return tuple(_compiled(test, self) for test in (*ready, *atoms))
 
     def _is_static(self, atom: Atom) -> bool:
-        return atom.predicate in self._world.static
+        return atom.predicate in self.world.static
 
     def _is_bound(self, formula: Formula) -> bool:
         return all(isinstance(slot, str) or slot in self.bound for slot in self.slots(terms_of(formula)))
-
-    @property
-    def world(self) -> StaticWorld:
-        """Objects and static facts."""
-        return self._world
 
 
 def join_plan(rule: Rule, trigger: Atom | None, index: FactIndex, world: StaticWorld) -> JoinPlan:

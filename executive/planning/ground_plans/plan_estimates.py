@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tailor.executive.planning.flaws.ranking import Estimate
+from tailor.executive.planning.ground.additive_heuristic import sum_of
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.structures.linked_list import cells_of
@@ -18,13 +19,8 @@ class GroundEstimates:
 
     def plain(self, plan: PartialPlan) -> Estimate:
         """See `PlanEstimates`."""
-        cost: float = 0
-        work: float = 0
-        for cell in cells_of(plan.open):
-            value = self._task.estimates.of(cell.condition)
-            cost += value.cost
-            work += value.work
-        return cost, work
+        total = sum_of(self._task.estimates.of(cell.condition) for cell in cells_of(plan.open))
+        return total.cost, total.work
 
     def reusing(self, plan: PartialPlan) -> Estimate:
         """See `PlanEstimates`; without calls, as it is the planner's hottest loop.
