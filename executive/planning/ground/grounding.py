@@ -68,9 +68,7 @@ class GroundActions:
 def static_world(problem: Problem) -> StaticWorld:
     """The part of a problem that no action changes."""
     domain = problem.domain
-    changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
-    changing |= {timed.literal.fact[0] for timed in problem.timed}
-    static = frozenset(set(domain.predicates) - changing)
+    static = frozenset(domain.predicates.keys() - problem.changing)
     ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
     objects: dict[str, list[str]] = {kind: [] for kind in domain.types}
     for item in ordered:

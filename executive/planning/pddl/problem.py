@@ -39,6 +39,12 @@ class Problem:
     # goals with their texts in one line, by the text as given
     _read: dict[str, tuple[Formula, str]] = field(default_factory=dict, compare=False, repr=False)
 
+    @property
+    def changing(self) -> frozenset[str]:
+        """Predicates that actions or timed literals change; the others are static."""
+        by_actions = (effect.atom.predicate for action in self.domain.actions for effect in action.effects)
+        return frozenset({*by_actions, *(timed.literal.fact[0] for timed in self.timed)})
+
     def with_initial(self, facts: Iterable[Fact]) -> Problem:
         """The same problem from another initial state.
 

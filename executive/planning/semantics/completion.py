@@ -50,8 +50,7 @@ def _completion(plan: Plan, domain: Domain, objects: Objects) -> Work[Plan | str
     supported = {(link.literal, link.consumer) for link in plan.links}
     needed = yield from linking(located, domain, objects)
     absent = [link for link in needed if (link.literal, link.consumer) not in supported]
-    changing = {effect.atom.predicate for action in domain.actions for effect in action.effects}
-    changing |= {timed.literal.fact[0] for timed in problem.timed}
+    changing = problem.changing
     linked = replace(located, links=by_consumer((*absent, *plan.links), located.steps))
     keeps = located.steps == plan.steps and not any(link.literal.fact[0] in changing for link in absent)
     if not keeps or not (yield from _protects(linked, domain, objects)):
