@@ -49,9 +49,9 @@ class PlanScore:
     def __init__(
         self, sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator
     ) -> None:
-        count = len(sequence.actions)
-        self._settings = replace(settings, horizon=count, solver="auto", checks_max=JOINT_CHECKS, arrival_spread=())
-        self._objective = SequenceObjective(sequence.within(count), sequence.variables, models, self._settings)
+        every = len(sequence.actions)
+        self._settings = replace(settings, horizon=every, solver="auto", checks_max=JOINT_CHECKS, arrival_spread=())
+        self._objective = SequenceObjective(sequence.actions, sequence.variables, models, self._settings)
         self._search = GreedySearch(sequence, models, self._settings, rng)
         self._rng = rng
         self._solver: Solver | None = None  # of all free parameters

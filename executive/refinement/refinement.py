@@ -146,9 +146,8 @@ class Refinement:
         """Improvements so far: the greedy answer, and all that are better."""
         trace = [(self._greedy_evaluations, self._greedy_s)] if np.isfinite(self._greedy_s) else []
         if self._solver is not None:
-            improvements = zip(self._solver.trace.evaluations, self._solver.trace.values, strict=True)
             first = self._greedy_evaluations
-            trace += [(first + count, value) for count, value in improvements if value < self._greedy_s]
+            trace += [(first + count, value) for count, value in self._solver.trace if value < self._greedy_s]
         return tuple(trace)
 
     @property

@@ -6,7 +6,7 @@ where the last one stopped. It draws only from the given generator.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -40,21 +40,6 @@ class Limits:
     min_gain: float = 0.0
 
 
-@dataclass(slots=True)
-class Trace:
-    """Improvements of the best value: number of checks and of model inputs, and the value."""
-
-    checks: list[int] = field(default_factory=list)
-    evaluations: list[int] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
-
-    def add(self, checks: int, evaluations: int, value: float) -> None:
-        """Add an improvement."""
-        self.checks.append(checks)
-        self.evaluations.append(evaluations)
-        self.values.append(value)
-
-
 class Solver:
     """Base of all solvers: best candidate, trace and end of the search; a subclass defines one check.
 
@@ -68,7 +53,7 @@ class Solver:
     def __init__(self, objective: Objective, rng: np.random.Generator, seeds: Array, limits: Limits) -> None:
         self.best: Array | None = None  # shape (d,); None until the first valid candidate
         self.value = np.inf
-        self.trace = Trace()
+        self.trace: list[tuple[int, float]] = []  # improvements: number of model inputs so far, and the value
         self.checks = 0
         self._objective = objective
         self._rng = rng
@@ -105,7 +90,7 @@ class Solver:
         if value < self.value:
             self.best = candidate.copy()
             self.value = float(value)
-            self.trace.add(self.checks, self._objective.evaluations, self.value)
+            self.trace.append((self._objective.evaluations, self.value))
 
     def _consider_all(self, candidates: Array, values: Array) -> None:
         """Keep the best of the candidates, shape (n, d), if it is the best so far."""
