@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,25 +15,20 @@ from tailor.executive.refinement.solvers.selection import solver_for
 from tailor.executive.refinement.solvers.solver import Solver
 
 
-@dataclass(frozen=True, slots=True)
-class Greedy:
-    """Values by variable id for all actions in the horizon, and the number of model inputs predicted for them."""
-
-    values: dict[int, float]
-    evaluations: int
-
-
-def greedy(sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator) -> Greedy:
-    """The greedy answer of `settings.greedy_checks` batches for each action; see `GreedySearch`."""
+def greedy(
+    sequence: ActionSequence, models: Models, settings: RefinementSettings, rng: np.random.Generator
+) -> GreedySearch:
+    """A finished search, with `settings.greedy_checks` batches for each action."""
     search = GreedySearch(sequence, models, settings, rng)
     search.complete(settings.greedy_checks)
-    return Greedy(search.values, search.evaluations)
+    return search
 
 
 class GreedySearch:
     """Optimises the next action (with its asserted subgoals) alone, then the one after it given that, and so on.
 
-    Resumable. The free parameters of an action without a valid candidate are set to the middle of their ranges.
+    Resumable; `values`, by variable id, are those of the actions that are done. The free parameters of an action
+    without a valid candidate are set to the middle of their ranges.
 
     Args:
       sequence: Instantiated, with asserted subgoals.

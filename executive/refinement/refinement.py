@@ -16,7 +16,7 @@ from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.certificates.certificate import Certificate, certificate
 from tailor.executive.refinement.certificates.stage_bounds import NoBound
 from tailor.executive.refinement.deviation import required_gain_s
-from tailor.executive.refinement.greedy import Greedy, GreedySearch, greedy
+from tailor.executive.refinement.greedy import GreedySearch, greedy
 from tailor.executive.refinement.objective.choice import Choice, choice_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence
@@ -68,7 +68,7 @@ class Refinement:
         terms = (sequence.within(settings.horizon), sequence.variables, models, settings)
         self._objective = SequenceObjective(*terms)
         self._reporting = SequenceObjective(*terms)  # its evaluations do not count as the search's
-        self._greedy: Greedy | None = None  # the first answer
+        self._greedy: GreedySearch | None = None  # the first answer
         self._greedy_search: GreedySearch | None = None
         self._greedy_choice: Choice | None = None
         self._required_s = settings.gain_min_s  # predicted gain from which another choice is taken
