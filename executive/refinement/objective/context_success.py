@@ -51,7 +51,7 @@ class ContextSuccess:
 
     @property
     def bounds(self) -> ContextBounds | None:
-        """Bounds of the probability; None if that of the action by itself has none.
+        """Upper bounds of the probability, which alone a proof needs; None if that of the action by itself has none.
 
         Objects without bounds count as never met, and so do all where some are left out: what the model says of one
         does not hold where it is not asked. So the upper bound is still one.
@@ -60,23 +60,17 @@ class ContextSuccess:
         if self.own is not None and own is None:
             return None
         if beside is None or self.may_meet is not None:
-            return ContextBounds(own, (), self.rows[:0], ignores=True)
+            return ContextBounds(own, (), self.rows[:0])
         return ContextBounds(own, (beside,) * len(self.rows), self.rows)
 
 
 @dataclass(frozen=True, slots=True)
 class ContextBounds:
-    """Bounds of a `ContextSuccess`: those of the factors, for objects that stay where they are."""
+    """Upper bounds of a `ContextSuccess`: those of the factors, for objects that stay where they are."""
 
     own: ModelBounds | None
     beside: tuple[ModelBounds, ...]  # (m,)
     rows: Array  # (m, c)
-    ignores: bool = False  # that there are further objects: whether these are met is unknown
-
-    def lower_bound(self, lower: Columns, upper: Columns, k_std: float = 0.0) -> Array:
-        """Lower bound of the probability; it has no standard deviation."""
-        own, in_spite = self._factored([bound.lower_bound(*box) for bound, box in self._factors(lower, upper)])
-        return own * in_spite * (not self.ignores)
 
     def upper_bound(self, lower: Columns, upper: Columns) -> Array:
         """Upper bound of the probability."""
@@ -85,15 +79,19 @@ class ContextBounds:
 
     def upper_bounds(self, lower: Columns, upper: Columns) -> tuple[Array, Array]:
         """Upper bounds of success by itself, and in spite of the objects."""
-        return self._factored([bound.upper_bound(*box) for bound, box in self._factors(lower, upper)])
+        bounds = [np.clip(bound.upper_bound(*box), 0.0, 1.0) for bound, box in self._factors(lower, upper)]
+        own = product = np.ones(1)
+        if self.own is not None:
+            own = bounds.pop(0)
+        for bound in bounds:  # in the order of the probabilities: rounding keeps the order of products
+            product = product * bound
+        return own, product
 
     def within(self, lower: Columns, upper: Columns) -> ContextBounds:
         """Bounds that are valid only for arguments in this box, each object's with the leaves near it."""
         restricted = [bound.within(*box) for bound, box in self._factors(lower, upper)]
         own = None if self.own is None else restricted.pop(0)
-        return ContextBounds(own, tuple(restricted), self.rows, self.ignores)
-
-    is_linear = False
+        return ContextBounds(own, tuple(restricted), self.rows)
 
     @property
     def effort(self) -> int:
@@ -108,11 +106,3 @@ class ContextBounds:
             constant = tuple(np.full((1, 1, 1), value) for value in row)
             factors.append((bound, ((*lower, *constant), (*upper, *constant))))
         return factors
-
-    def _factored(self, bounds: list[Array]) -> tuple[Array, Array]:
-        """Bound of success by itself, and the product of the others."""
-        one: Array = np.ones(1)
-        own, product = (one if self.own is None else np.clip(bounds.pop(0), 0.0, 1.0)), one
-        for bound in bounds:  # in the order of the probabilities: rounding keeps the order of products
-            product = product * np.clip(bound, 0.0, 1.0)
-        return own, product

@@ -271,12 +271,11 @@ def test_objects_that_cannot_be_met_cost_no_model_call_and_no_success():
 
 
 @pytest.mark.parametrize("may_meet", [None, lambda arguments, rows: np.zeros((len(rows), len(arguments)), bool)])
-def test_objects_without_bounds_or_perhaps_left_out_bound_success_between_nothing_and_that_without_them(may_meet):
+def test_objects_without_bounds_or_perhaps_left_out_do_not_lower_the_bound_of_success(may_meet):
     own, beside = Trees.random(1, success=True), Trees.random(2, "one-obstacle", success=True)
     beside = beside if may_meet else ClearanceSuccess()
     bounds = ContextSuccess(own, beside, np.array([IN_THE_WAY, ASIDE]), may_meet).bounds
     columns = tuple(np.full((1, 1, 1), value) for value in ARGUMENTS[0])
-    assert bounds.lower_bound(columns, columns).item() == 0.0
     for restricted in (bounds, bounds.within(columns, columns)):
         assert restricted.upper_bound(columns, columns) == own.bounds.upper_bound(columns, columns)
         assert [bound.item() for bound in restricted.upper_bounds(columns, columns)][1] == 1.0
