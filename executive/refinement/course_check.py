@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from tailor.executive.interfaces.models import Models
-from tailor.executive.refinement.assertion.asserted_subgoal import start_indices
+from tailor.executive.refinement.assertion.asserted_subgoal import start_ids
 from tailor.executive.refinement.objective.choice import any_of
 from tailor.executive.refinement.objective.objective import SequenceObjective
-from tailor.executive.refinement.objective.sequence import ActionSequence, InstantiatedAction
+from tailor.executive.refinement.objective.sequence import ActionSequence
 from tailor.executive.refinement.objective.settings import RefinementSettings
 
 MAX_RISE = 0.05  # of the predicted probability of failure since the decision
@@ -50,22 +50,13 @@ def risen_failure(
 
 def from_here(course: ActionSequence, now: ActionSequence) -> ActionSequence:
     """A bound course whose first action starts from the state of now, and whose objects are those of now."""
-    first, believed = course.actions[0], _start(now, now.actions[0])
+    believed = {quantity: now.variables[i].value for quantity, i in start_ids(now.actions[0]).items()}
     variables = list(course.variables)
-    for j in start_indices(first.action):
-        value = believed.get(first.action.parameters[j].quantity)
-        if value is not None:
-            variables[first.variables[j]] = variables[first.variables[j]].bound_to(value)
+    for quantity, i in start_ids(course.actions[0]).items():
+        if (value := believed.get(quantity)) is not None:
+            variables[i] = variables[i].bound_to(value)
     actions = tuple(
         replace(each, context=now.contexts.get(each.action.name, ())) if each.action.context else each
         for each in course.actions
     )
     return replace(course, actions=actions, variables=tuple(variables))
-
-
-def _start(sequence: ActionSequence, instance: InstantiatedAction) -> dict[str, float | None]:
-    """Values of an action's start state by quantity."""
-    parameters = instance.action.parameters
-    return {
-        parameters[j].quantity: sequence.variables[instance.variables[j]].value for j in start_indices(instance.action)
-    }

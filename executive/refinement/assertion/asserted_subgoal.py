@@ -24,7 +24,7 @@ def with_subgoal(sequence: ActionSequence, position: int) -> ActionSequence:
     """
     action = sequence.actions[position]
     subgoal_action = sequence.library[action.action.subgoal_action]
-    start = _by_quantity(action, start_indices(action.action))
+    start = start_ids(action)
     subgoal = _free_subgoal(subgoal_action, len(sequence.variables))
     subgoal_ids = {variable.quantity: variable.id for variable in subgoal}
     goal_side = set(goal_indices(subgoal_action))
@@ -54,9 +54,9 @@ def goal_indices(action: Action) -> tuple[int, ...]:
     return tuple(j for j, parameter in enumerate(action.parameters) if parameter.argument == last)
 
 
-def _by_quantity(instance: InstantiatedAction, indices: tuple[int, ...]) -> dict[str, int]:
-    """Variable ids by quantity."""
-    return {instance.action.parameters[j].quantity: instance.variables[j] for j in indices}
+def start_ids(instance: InstantiatedAction) -> dict[str, int]:
+    """Variable ids of the action's start state, by quantity."""
+    return {instance.action.parameters[j].quantity: instance.variables[j] for j in start_indices(instance.action)}
 
 
 def _free_subgoal(subgoal_action: Action, first_id: int) -> tuple[Variable, ...]:
