@@ -64,7 +64,10 @@ def interrupted(context: Context, before: Task, state: State, inputs: Inputs) ->
 def finished_message(
     context: Context, state: State, index: int, running: Running, end: tuple[str, Cause | None]
 ) -> ActionFinished:
-    """Report of the task's action number `index` that ends in this tick; `end` is its outcome with the cause."""
+    """Report of the task's action number `index` that ends in this tick; `end` is its outcome with the cause.
+
+    Only an action that its controller has done has no cause.
+    """
     outcome, cause = end
     return ActionFinished(
         stamp_ns=context.stamp(state.now_ns),
@@ -75,12 +78,8 @@ def finished_message(
         reason=str(cause.reason) if cause is not None else "",
         predicted_s=running.predicted_s,
         actual_s=running.elapsed_s(state.now_ns),
-        detail=cause.detail if cause is not None else _surprise(outcome, running, state.now_ns),
+        detail=cause.detail if cause is not None else running.surprise(state.now_ns),
     )
-
-
-def _surprise(outcome: str, running: Running, now_ns: int) -> str:
-    return running.surprise(now_ns) if outcome == "done" else ""
 
 
 def _started(context: Context, state: State) -> State:

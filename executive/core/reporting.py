@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import finished_message
+from tailor.executive.core.deliberation_cycle import pending_request
 from tailor.executive.core.effects import missing_effects, planned_action
 from tailor.executive.core.execution import Running
 from tailor.executive.core.state import Output, State
@@ -41,7 +42,7 @@ def snapshot(state: State) -> Published:
     deliberation = state.deliberation
     return Published(
         deliberation,
-        deliberation.source.request if deliberation is not None else None,
+        pending_request(state),
         len(deliberation.plan_results) if deliberation is not None else 0,
         state.task.plan,
         state.task.running,
