@@ -1,1 +1,1 @@
-"""The zenoh bus: sessions, publishers, inboxes, services. Only session.py imports zenoh."""
+"""The zenoh bus: sessions, publishers, inboxes, services. Only session.py and wires.py import zenoh."""

@@ -46,7 +46,7 @@ def message_of(raw: Raw) -> Message | None:
 
 
 class Source(Protocol):
-    """One subscription; session.py implements it with a zenoh ring buffer."""
+    """One subscription; wires.py implements it with a zenoh ring buffer, latch.py for e-stops."""
 
     def receive(self) -> Raw | Rejected | None:
         """Oldest waiting sample, or why one was dropped; None if there is none; never blocks."""
@@ -100,7 +100,7 @@ class Inbox:
     def _read(self, number: int, raw: Raw, now: Instant, complete: set[str]) -> Sample | Rejected | None:
         """The sample; None if it comes from one of the `complete` senders."""
         topic, key, _, encoding = self._subscriptions[number]
-        origin = _origin(key, encoding, raw)
+        origin = origin_of(raw, key, encoding)
         if isinstance(origin, Rejected):
             return origin
         if origin.sender in complete:
@@ -121,7 +121,8 @@ class Inbox:
         return Sample(key, message, arrived, origin.sequence, origin.sender)
 
 
-def _origin(key: str, encoding: str, raw: Raw) -> Origin | Rejected:
+def origin_of(raw: Raw, key: str, encoding: str) -> Origin | Rejected:
+    """Origin of a message for a subscription to a key, whose messages have this encoding."""
     if raw.key != key:
         return Rejected("other key")  # a put on a wildcard reaches every key that matches
     if not raw.is_put:

@@ -5,9 +5,8 @@ Of the requests to stop it keeps the first, of the held dead man's switches the 
 
 from __future__ import annotations
 
-from tailor.runtime.bus.attachment import unpack
-from tailor.runtime.bus.encoding import encoding_of, is_of_other_type
-from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.bus.encoding import encoding_of
+from tailor.runtime.bus.inbox import Raw, origin_of
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import EStop
@@ -33,12 +32,8 @@ class EStopLatch:
 
         Only a message that the inbox accepts is kept, or junk would keep the place of a request to stop.
         """
-        if not raw.is_put or raw.key != self._key:
-            return
-        if is_of_other_type(raw.encoding, self._encoding):
-            return
-        origin, message = unpack(raw.attachment), decode(self._topic, raw.payload)
-        if isinstance(origin, Rejected) or not isinstance(message, EStop):
+        origin = origin_of(raw, self._key, self._encoding)
+        if isinstance(origin, Rejected) or not isinstance(message := decode(self._topic, raw.payload), EStop):
             return
         if message.stop:
             self._latched = self._latched or raw

@@ -12,7 +12,7 @@ from tailor.schemas.messages import Message
 
 
 class Wire(Protocol):
-    """Destination of the bytes; session.py implements it with a zenoh publisher."""
+    """Destination of the bytes; wires.py implements it with zenoh publishers."""
 
     def put(self, payload: bytes, attachment: bytes | None) -> None:
         """Send one publication; drop it rather than wait."""
