@@ -22,15 +22,13 @@ class Period:
 
 
 class Loop:
-    """Starts periods at `start + k * period` and counts skipped ones."""
+    """Starts periods at `start + k * period`."""
 
     def __init__(self, period_ns: int, clock: Clock) -> None:
         """Raise ValueError unless `period_ns` is positive."""
         if period_ns <= 0:
             raise ValueError(f"period_ns must be positive, is {period_ns}")
         self.period_ns = period_ns
-        self.overruns = 0  # periods that started after at least one lost period
-        self.skipped = 0  # periods lost so far
         self._clock = clock
         self._deadline_ns: int | None = None
 
@@ -43,7 +41,5 @@ class Loop:
         due_ns = self._deadline_ns + self.period_ns
         lost = max(0, (now_ns - due_ns) // self.period_ns)
         self._deadline_ns = due_ns + lost * self.period_ns
-        self.skipped += lost
-        self.overruns += lost > 0
         self._clock.sleep_until(self._deadline_ns)
         return Period(self._deadline_ns, self._clock.now_ns(), lost)

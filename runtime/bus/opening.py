@@ -23,7 +23,7 @@ PROBE_S = 0.5
 
 
 @contextmanager
-def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT, keys: KeyProfile = PLAIN) -> Iterator[Session]:
+def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session]:
     """Router of an open bus at one endpoint, without local socket, passwords and rules; also a session like a client's.
 
     Raises:
@@ -31,7 +31,7 @@ def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT, keys: KeyProfile = 
     """
     with ExitStack() as stack:
         with inherited_fifo():
-            session = stack.enter_context(_router(zenoh_config.router(listen), listen, keys))
+            session = stack.enter_context(_router(zenoh_config.router(listen), listen))
             _start_threads(zenoh_config.client([listen], SELF_CONNECT_MS))
         yield session
 

@@ -59,7 +59,7 @@ class RunFolder:
         False for a folder in a place where everybody may make one, if it is not ours: another user's router there
         would take our e-stops, and report them as done.
         """
-        if not _is_named() and not all(is_private(each) for each in (self.path.parent, self.path)):
+        if _named() is None and not all(is_private(each) for each in (self.path.parent, self.path)):
             return False
         with socket.socket(socket.AF_UNIX) as probe:
             probe.setblocking(False)
@@ -124,11 +124,6 @@ def _named() -> Path | None:
         return Path(os.environ[VARIABLE])
     session = Path(os.environ.get("XDG_RUNTIME_DIR", ""))
     return session / "tailor" if session.is_absolute() else None
-
-
-def _is_named() -> bool:
-    """Whether the environment names the folder of all runs; else it lies where every user may make it first."""
-    return _named() is not None
 
 
 def is_private(path: Path) -> bool:

@@ -47,7 +47,6 @@ def test_an_overrun_skips_whole_periods_and_keeps_the_phase():
     assert loop.wait_for_next_period() == Period(300 * MS, 300 * MS, 0)
     clock.now = 1000 * MS
     assert loop.wait_for_next_period() == Period(1000 * MS, 1000 * MS, 6)
-    assert (loop.overruns, loop.skipped) == (2, 7)
 
 
 def test_a_tick_that_just_fills_its_period_skips_nothing():
@@ -56,7 +55,6 @@ def test_a_tick_that_just_fills_its_period_skips_nothing():
     loop.wait_for_next_period()
     clock.now = 199 * MS
     assert loop.wait_for_next_period() == Period(100 * MS, 199 * MS, 0)
-    assert loop.skipped == 0
 
 
 @pytest.mark.promise("P22")
