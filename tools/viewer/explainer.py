@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache, lru_cache
 from typing import Any
 
@@ -17,6 +17,7 @@ from tailor.schemas.parsed_files import table_of
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure
+from tailor.tools.viewer.explanations.decided_sequence import Decided, decided
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
 from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
@@ -39,6 +40,7 @@ class Explainer:
         self._load: ModelLoader = load_models
         self._context: Context | None = None
         self._objects: Contexts | None = None  # the newest
+        self._decided: Decided | None = None  # what was explained last
         self.missing = "no provenance yet"
 
     def load(self, provenance: str) -> None:
@@ -68,28 +70,24 @@ class Explainer:
 
     def explanation(self, message: Subgoals) -> Explanation | None:
         """Explanation of subgoals; None without models, if no parameter was free, or if the message is damaged."""
-        context = self._context
+        context, self._decided = self._context, None
         if context is None or message.tick < 0:
             return None
-        rng = np.random.default_rng([context.settings.seed, STREAM, message.tick])
-        objects = self._objects
         with blamed_on_run(context.domain.name):
-            return explain(message, context.domain.actions, context.models, context.settings.refinement, rng, objects)
+            settings = context.settings.refinement
+            self._decided = decided(message, context.domain.actions, context.models, settings, self._objects)
+            return None if self._decided is None else explain(self._decided, _rng(context, STREAM, message))
 
     def best_cost(self, message: Subgoals) -> float:
-        """Least objective that a long search finds for the same decision."""
-        assert self._context is not None, "explanation() returned None"
-        context = self._context
-        rng = np.random.default_rng([context.settings.seed, STREAM + 1, message.tick])
-        settings, objects = context.settings.refinement, self._objects
-        return best_cost(message, context.domain.actions, context.models, settings, rng, objects=objects)
+        """Least objective that a long search finds for the decision that was explained last."""
+        assert self._context is not None
+        assert self._decided is not None, "explanation() returned None"
+        return best_cost(self._decided, _rng(self._context, STREAM + 1, message))
 
-    def why_not_certified(self, message: Subgoals, report: RefinementReport | None) -> str:
-        """Why the choice of the same decision has no certificate, if it has none."""
-        assert self._context is not None, "explanation() returned None"
-        context = self._context
-        settings, objects = context.settings.refinement, self._objects
-        return why_not_certified(message, context.domain.actions, context.models, settings, report, objects)
+    def why_not_certified(self, report: RefinementReport | None) -> str:
+        """Why the choice that was explained last has no certificate, if it has none."""
+        assert self._decided is not None, "explanation() returned None"
+        return why_not_certified(self._decided, report)
 
     def fields(self, message: Subgoals) -> Fields | None:
         """The explanation as the page reads it; None also if the models do not suit the settings of the run."""
@@ -101,16 +99,19 @@ class Explainer:
         return None if explanation is None else fields_of(explanation)
 
 
+def _rng(context: Context, stream: int, message: Subgoals) -> np.random.Generator:
+    return np.random.default_rng([context.settings.seed, stream, message.tick])
+
+
 def fields_of(explanation: Explanation) -> Fields:
     """An explanation as JSON values; INVALID and unknown numbers are null."""
+    energies = (explanation.chosen_j, explanation.greedy_j)
     return {
         "actions": list(explanation.actions),
-        "chosen": [number(s) for s in explanation.chosen_s],
-        "greedy": [number(s) for s in explanation.greedy_s],
-        "cost": [number(explanation.chosen_cost), number(explanation.greedy_cost)],
-        **(
-            {"energy": [_numbers(explanation.chosen_j), _numbers(explanation.greedy_j)]} if explanation.chosen_j else {}
-        ),
+        "chosen": _numbers(explanation.chosen_s),
+        "greedy": _numbers(explanation.greedy_s),
+        "cost": _numbers((explanation.chosen_cost, explanation.greedy_cost)),
+        **({"energy": [_numbers(each) for each in energies]} if explanation.chosen_j else {}),
         **({"avoided": _avoided(explanation.avoided)} if explanation.avoided else {}),
         "parameters": [_parameter(parameter) for parameter in explanation.parameters],
     }
@@ -120,7 +121,7 @@ def _avoided(failure: AvoidedFailure) -> Fields:
     return {"action": failure.action, "straight": number(failure.straight), "by_subgoal": number(failure.by_subgoal)}
 
 
-def _numbers(values: Sequence[float]) -> list[float | None]:
+def _numbers(values: Iterable[float]) -> list[float | None]:
     return [number(value) for value in values]
 
 
@@ -135,8 +136,8 @@ def _parameter(free: FreeParameter) -> Fields:
         "chosen": number(free.chosen),
         "greedy": number(free.greedy),
         "touched": list(free.touched),
-        "values": [number(v) for v in alternatives.values],
-        "seconds": [[number(s) for s in alternatives.durations_s[i]] for i in free.touched],  # others are constant
-        "total": [number(s) for s in alternatives.durations_s.sum(axis=0)],
-        "cost": [number(s) for s in alternatives.total_s],
+        "values": _numbers(alternatives.values),
+        "seconds": [_numbers(alternatives.durations_s[i]) for i in free.touched],  # others are constant
+        "total": _numbers(alternatives.durations_s.sum(axis=0)),
+        "cost": _numbers(alternatives.total_s),
     }

@@ -93,5 +93,5 @@ def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
     best_cost, reason = explainer.best_cost(decision.subgoals), ""
     report = decision.search.report
     if certified_gap_pct(report, explanation.chosen_cost) is None:
-        reason = explainer.why_not_certified(decision.subgoals, report)
+        reason = explainer.why_not_certified(report)
     return ExplainedDecision(decision, explanation, best_cost, reason)

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.assertion.subgoal_comparison import with_any_risk
 from tailor.executive.refinement.course_check import from_here
 from tailor.executive.refinement.objective.choice import any_of, choice_of
-from tailor.executive.refinement.objective.sequence import ActionSequence
-from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.tools.viewer.explanations.decided_sequence import objective_of
+from tailor.tools.viewer.explanations.decided_sequence import Decided, objective_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +21,13 @@ class AvoidedFailure:
     by_subgoal: float  # that the way to a subgoal or the action fails
 
 
-def avoided_failure(
-    sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
-) -> AvoidedFailure | None:
+def avoided_failure(decided: Decided) -> AvoidedFailure | None:
     """Failure that the asserted subgoals at the start of a sequence avoid; None if it begins with none."""
-    unit = sequence.units()[0]
+    unit = decided.sequence.units()[0]
     if not unit[0].asserted or unit[-1].asserted:
         return None
-    bound = with_any_risk(sequence.bind(chosen))
+    bound = with_any_risk(decided.sequence.bind(decided.chosen))
     ways = (from_here(replace(bound, actions=unit[-1:]), bound), replace(bound, actions=unit))
-    choices = (choice_of(objective_of(way, models, settings), np.empty(0)) for way in ways)
+    choices = (choice_of(objective_of(way, decided.models, decided.settings), np.empty(0)) for way in ways)
     straight, by_subgoal = (any_of(choice.failure) for choice in choices)
     return AvoidedFailure(unit[-1].action.name, straight, by_subgoal)

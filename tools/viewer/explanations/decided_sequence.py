@@ -1,9 +1,9 @@
-"""The action sequence that a decision was made for, rebuilt from its recorded message."""
+"""The decision of a recorded message, rebuilt so that the models can judge it again."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,42 @@ from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas import messages as m
 
 MAX_ID = 4096  # of a variable; a message has no room for as many
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """A decision: its sequence, the values chosen for the free parameters by variable id, and what judges them.
+
+    Where the choice needs it, the sequence allows every risk: risks that were accepted are not in the message.
+    """
+
+    sequence: ActionSequence
+    chosen: Mapping[int, float]
+    models: Models
+    settings: RefinementSettings  # with the horizon of the decision
+    objective: SequenceObjective
+
+
+def decided(
+    message: m.Subgoals,
+    library: Mapping[str, Action],
+    models: Models,
+    settings: RefinementSettings,
+    objects: m.Contexts | None = None,
+) -> Decided | None:
+    """The decision that the message reports; None if it does not fit the actions of the library.
+
+    `objects` are those of the decision if they were published in the same tick.
+    """
+    sequence = sequence_of(message, library, objects)
+    if sequence is None or message.horizon < 1:
+        return None
+    settings = replace(settings, horizon=min(message.horizon, len(sequence.actions)))
+    chosen, objective = chosen_values(message), objective_of(sequence, models, settings)
+    if not np.isfinite(objective(objective.vector(chosen)[None]))[0]:
+        sequence = replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
+        objective = objective_of(sequence, models, settings)
+    return Decided(sequence, chosen, models, settings, objective)
 
 
 def sequence_of(
@@ -54,16 +90,6 @@ def sequence_of(
 def chosen_values(message: m.Subgoals) -> dict[int, float]:
     """The values that were chosen for the free parameters, by variable id."""
     return {p.id: p.value for a in message.actions for p in a.parameters if not p.bound}
-
-
-def accepted(
-    sequence: ActionSequence, chosen: Mapping[int, float], models: Models, settings: RefinementSettings
-) -> ActionSequence:
-    """The sequence with every risk allowed if the choice needs it: risks that were accepted are not in the message."""
-    objective = objective_of(sequence, models, settings)
-    if np.isfinite(objective(objective.vector(chosen)[None]))[0]:
-        return sequence
-    return replace(sequence, actions=tuple(replace(action, risk=1.0) for action in sequence.actions))
 
 
 def objective_of(sequence: ActionSequence, models: Models, settings: RefinementSettings) -> SequenceObjective:

@@ -5,12 +5,10 @@ Made from a recorded `Subgoals` message and the action models alone; nothing is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.values import Array
 from tailor.executive.refinement.alternatives import Alternatives, alternatives
@@ -18,9 +16,8 @@ from tailor.executive.refinement.greedy import GreedySearch, greedy
 from tailor.executive.refinement.objective.objective import SequenceObjective
 from tailor.executive.refinement.objective.sequence import ActionSequence, Variable
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.schemas import messages as m
 from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure, avoided_failure
-from tailor.tools.viewer.explanations.decided_sequence import accepted, chosen_values, objective_of, sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import Decided
 from tailor.tools.viewer.explanations.situation import Situation, situations_of
 
 GREEDY_CHECKS = 500  # of each action; the search ends by itself long before
@@ -56,26 +53,10 @@ class Explanation:
     avoided: AvoidedFailure | None = None  # by the asserted subgoals that it begins with, if any
 
 
-def explain(
-    message: m.Subgoals,
-    library: Mapping[str, Action],
-    models: Models,
-    settings: RefinementSettings,
-    rng: np.random.Generator,
-    objects: m.Contexts | None = None,
-) -> Explanation | None:
-    """The explanation of a decision; None when nothing was free to choose, or an action is not in the library.
-
-    The greedy choice is searched anew from `rng`. `objects` are those of the decision if they were published in the
-    same tick.
-    """
-    sequence = sequence_of(message, library, objects)
-    if sequence is None or message.horizon < 1:
-        return None
-    settings = replace(settings, horizon=min(message.horizon, len(sequence.actions)))
-    chosen = chosen_values(message)
-    sequence = accepted(sequence, chosen, models, settings)
-    objective = objective_of(sequence, models, settings)
+def explain(decided: Decided, rng: np.random.Generator) -> Explanation | None:
+    """The explanation of a decision; None when nothing was free to choose. The greedy choice is searched anew."""
+    sequence, chosen, objective = decided.sequence, decided.chosen, decided.objective
+    models, settings = decided.models, decided.settings
     if not objective.ids:
         return None
     alone = greedy_values(sequence, models, settings, rng)
@@ -94,7 +75,7 @@ def explain(
         situations_of(sequence.within(settings.horizon), sequence.bind(chosen), sequence.bind(alone), models),
         tuple(chosen_j) if settings.energy_weight else (),
         tuple(greedy_j) if settings.energy_weight else (),
-        avoided_failure(sequence, chosen, models, settings),
+        avoided_failure(decided),
     )
 
 

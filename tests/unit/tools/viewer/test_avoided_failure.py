@@ -13,6 +13,7 @@ from tailor.schemas.messages import Subgoals
 from tailor.tools.viewer.decisions.explained_decisions import explained_decisions
 from tailor.tools.viewer.decisions.explanation_text import explanation_lines
 from tailor.tools.viewer.explainer import fields_of
+from tailor.tools.viewer.explanations.decided_sequence import decided
 from tailor.tools.viewer.explanations.explanation import Explanation, explain
 from tests.support import synthetic_run
 from tests.support.bus_system import ROOT
@@ -20,7 +21,8 @@ from tests.support.synthetic_models import LIBRARY, MODELS, approach_dribble
 
 
 def explained(message: Subgoals) -> Explanation | None:
-    return explain(message, LIBRARY, MODELS, synthetic_run.SETTINGS, np.random.default_rng(0))
+    decision = decided(message, LIBRARY, MODELS, synthetic_run.SETTINGS)
+    return None if decision is None else explain(decision, np.random.default_rng(0))
 
 
 def a_message() -> Subgoals:

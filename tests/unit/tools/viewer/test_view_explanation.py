@@ -25,7 +25,7 @@ from tailor.tools.viewer.decisions.explanation_text import (
 from tailor.tools.viewer.decisions.recorded_search import RecordedSearch
 from tailor.tools.viewer.explainer import Explainer, fields_of
 from tailor.tools.viewer.explanations import missing_certificate
-from tailor.tools.viewer.explanations.decided_sequence import sequence_of
+from tailor.tools.viewer.explanations.decided_sequence import decided, sequence_of
 from tailor.tools.viewer.explanations.explanation import explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
 from tailor.tools.viewer.explanations.situation import Situation
@@ -51,8 +51,13 @@ def message_of(sequence, choice) -> Subgoals:
     return synthetic_run.subgoals(2, sequence, choice, 0)
 
 
-def explained(message: Subgoals):
-    return explain(message, LIBRARY, MODELS, SETTINGS, np.random.default_rng(0))
+def explained(message: Subgoals, models=MODELS, settings=SETTINGS):
+    decision = decided(message, LIBRARY, models, settings)
+    return None if decision is None else explain(decision, np.random.default_rng(0))
+
+
+def least_cost(message: Subgoals, settings=SETTINGS, checks=100):
+    return best_cost(decided(message, LIBRARY, MODELS, settings), np.random.default_rng(1), checks)
 
 
 def test_the_sequence_is_rebuilt_from_its_message(refined) -> None:
@@ -78,7 +83,6 @@ REASONS = {
     "certify_checks is 0": {"settings": replace(SETTINGS, certify_checks=0)},
     "approachBall: its models have no bounds": {},
     "approachBall: its model arguments are not available as intervals": {"library": UNSPANNED},
-    "its actions are not those of the library": {"library": {}},
 }
 UNPROVEN = {
     "the search was interrupted before a proof began": report(finished=False),
@@ -86,9 +90,9 @@ UNPROVEN = {
 }
 
 
-def reason_for(refined, **given):
-    usual = {"library": LIBRARY, "models": MODELS, "settings": SETTINGS, "report": report()}
-    return missing_certificate.why_not_certified(message_of(*refined), **{**usual, **given})
+def reason_for(refined, search=None, library=LIBRARY, settings=SETTINGS):
+    decision = decided(message_of(*refined), library, MODELS, settings)
+    return missing_certificate.why_not_certified(decision, search or report())
 
 
 @pytest.mark.parametrize("reason", REASONS)
@@ -99,7 +103,7 @@ def test_a_choice_that_has_no_bound_has_a_reason(refined, reason) -> None:
 @pytest.mark.parametrize("reason", UNPROVEN)
 def test_a_proof_that_proved_nothing_is_a_reason(refined, reason, monkeypatch) -> None:
     monkeypatch.setattr(missing_certificate, "certificate", lambda *given: object())
-    assert reason_for(refined, report=UNPROVEN[reason]) == reason
+    assert reason_for(refined, UNPROVEN[reason]) == reason
 
 
 def test_the_reason_is_printed_in_place_of_the_gap(refined) -> None:
@@ -135,19 +139,19 @@ def test_nothing_free_and_unknown_actions_have_no_explanation(refined) -> None:
     bound = tuple(replace(a, parameters=tuple(replace(p, bound=True) for p in a.parameters)) for a in message.actions)
     assert explained(replace(message, actions=bound)) is None
     assert explained(replace(message, actions=())) is None
-    assert explain(message, {}, MODELS, SETTINGS, np.random.default_rng(0)) is None
+    assert decided(message, {}, MODELS, SETTINGS) is None
 
 
 def test_a_risk_that_was_accepted_is_explained_and_not_invalid(refined) -> None:
     strict = replace(SETTINGS, p_fail_max=0.0)
-    explanation = explain(message_of(*refined), LIBRARY, MODELS, strict, np.random.default_rng(0))
+    explanation = explained(message_of(*refined), settings=strict)
     assert np.isfinite(explanation.chosen_cost)
 
 
 def test_where_energy_is_weighed_its_part_of_the_cost_is_message_of(refined) -> None:
     energies = {"goToPose/energy": PoseDuration(), "dribbleBall/energy": PoseDuration()}
     models, weighed = replace(MODELS, durations=MODELS.durations | energies), replace(SETTINGS, energy_weight=0.5)
-    explanation = explain(message_of(*refined), LIBRARY, models, weighed, np.random.default_rng(0))
+    explanation = explained(message_of(*refined), models, weighed)
     assert len(explanation.chosen_j) == len(explanation.chosen_s)
     plain = explained(message_of(*refined))
     assert explanation.chosen_cost == pytest.approx(plain.chosen_cost + 0.5 * sum(explanation.chosen_j))
@@ -184,24 +188,20 @@ def test_a_run_whose_models_are_missing_is_shown_without_explanations(refined) -
 
 def test_a_long_search_is_never_worse_than_the_choice_and_finds_what_a_poor_choice_missed(refined) -> None:
     sequence, choice = refined
-    rng = np.random.default_rng(1)
-    least = best_cost(message_of(sequence, choice), LIBRARY, MODELS, SETTINGS, rng, checks=100)
+    least = least_cost(message_of(sequence, choice))
     assert least <= choice.total_s + 1e-9
     angle = next(v.id for v in sequence.free() if v.quantity == "phi")
     poor = replace(choice, values={**choice.values, angle: choice.values[angle] - 0.3})
     cost = explained(message_of(sequence, poor)).chosen_cost
     assert cost > least + 0.01
-    assert best_cost(message_of(sequence, poor), LIBRARY, MODELS, SETTINGS, rng, checks=100) == pytest.approx(
-        least, abs=0.02
-    )
+    assert least_cost(message_of(sequence, poor)) == pytest.approx(least, abs=0.02)
 
 
 def test_a_long_search_looks_beyond_greedy_whatever_gain_the_executive_requires(refined) -> None:
     sequence, choice = refined
     for required in ({"gain_k_std": 0.5}, {"gain_k_std": 0.0, "gain_min_s": 100.0}):
         settings = replace(SETTINGS, **required)
-        least = best_cost(message_of(sequence, choice), LIBRARY, MODELS, settings, np.random.default_rng(1), checks=100)
-        assert least <= choice.total_s + 1e-9
+        assert least_cost(message_of(sequence, choice), settings) <= choice.total_s + 1e-9
 
 
 def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None:
@@ -210,7 +210,7 @@ def test_the_situation_holds_the_features_of_the_duration_model(refined) -> None
         card = {"features": "projective"}
 
     models = replace(MODELS, durations={**MODELS.durations, "goToPose/duration": Carded()})
-    explanation = explain(message_of(*refined), LIBRARY, models, SETTINGS, np.random.default_rng(0))
+    explanation = explained(message_of(*refined), models)
     (situation,) = explanation.situations
     assert (situation.action, [q.name for q in situation.features]) == (
         "approachBall",
@@ -277,9 +277,9 @@ def test_a_message_without_a_horizon_has_no_explanation(refined) -> None:
 
 
 def test_a_horizon_beyond_the_last_action_is_explained_as_one_of_all_actions(refined) -> None:
-    message, rng = replace(message_of(*refined), horizon=10**6), np.random.default_rng(0)
+    message = replace(message_of(*refined), horizon=10**6)
     assert explained(message).chosen_cost == explained(message_of(*refined)).chosen_cost
-    assert best_cost(message, LIBRARY, MODELS, SETTINGS, rng, checks=5) < float("inf")
+    assert least_cost(message, checks=5) < float("inf")
 
 
 def test_models_that_do_not_suit_the_settings_of_a_run_end_no_page(refined, monkeypatch) -> None:
