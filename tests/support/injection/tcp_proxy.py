@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from tailor.tools.launch.hosting import free_endpoint
+from tests.support.bus_system import address
 
 POLL_S = 0.002  # of the release of delayed bytes
 CHUNK = 65536
@@ -66,7 +67,7 @@ async def _serve(proxy, behind, stop, ready):
     async def connect(reader, writer):
         tasks.add(asyncio.current_task())
         try:
-            far_reader, far_writer = await asyncio.open_connection(*_address(behind))
+            far_reader, far_writer = await asyncio.open_connection(*address(behind))
         except OSError:
             writer.close()
             return
@@ -77,7 +78,7 @@ async def _serve(proxy, behind, stop, ready):
         with suppress(asyncio.CancelledError):  # the proxy ends
             await asyncio.gather(*both, return_exceptions=True)
 
-    server = await asyncio.start_server(connect, *_address(proxy.endpoint))
+    server = await asyncio.start_server(connect, *address(proxy.endpoint))
     ready.set()
     await stop.wait()
     server.close()
@@ -121,8 +122,3 @@ async def _read(reader):
         return await reader.read(CHUNK)
     except OSError:  # reset by the other end
         return b""
-
-
-def _address(endpoint):
-    host, _, port = endpoint.partition("/")[2].rpartition(":")
-    return host, int(port)

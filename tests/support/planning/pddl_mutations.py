@@ -14,10 +14,15 @@ CONNECTIVES = {
 # fmt: on
 
 
+def tokens_of(text):
+    """Words and parentheses, without comments."""
+    text = "\n".join(line.partition(";")[0] for line in text.splitlines())
+    return text.replace("(", " ( ").replace(")", " ) ").split()
+
+
 def mutated(text, rng):
     """The text with a few of its tokens dropped, doubled, swapped or replaced."""
-    text = "\n".join(line.partition(";")[0] for line in text.splitlines())
-    tokens = text.replace("(", " ( ").replace(")", " ) ").split()
+    tokens = tokens_of(text)
     for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
         i, j = rng.randrange(len(tokens)), rng.randrange(len(tokens))
         match rng.randrange(6):
@@ -38,9 +43,8 @@ def mutated(text, rng):
 
 def tree_of(text):
     """The text as nested lists of words."""
-    text = "\n".join(line.partition(";")[0] for line in text.splitlines())
     stack = [[]]
-    for token in text.replace("(", " ( ").replace(")", " ) ").split():
+    for token in tokens_of(text):
         if token == "(":
             stack.append([])
         elif token == ")":

@@ -6,16 +6,9 @@ The trace holds the largest magnitude of the set-points: the robot stands only i
 
 import json
 import sys
-import time
 from pathlib import Path
 
-from tailor.runtime.bus.opening import open_client
-from tailor.runtime.clock import MonotonicClock
-from tailor.runtime.stopping import stop_on_signals
-from tailor.schemas import codec
-from tailor.simnodes.node import Node
-from tailor.simnodes.world import World
-from tests.support.stand_ins.sim import LIMITS, Traced
+from tests.support.stand_ins.sim import Traced, simulate
 
 
 class Faulty(Traced):
@@ -42,13 +35,6 @@ class Faulty(Traced):
         return True
 
 
-def main(endpoint, path, rates):
-    stop = stop_on_signals()
-    codec.prime()
-    with open_client(endpoint, role="driver") as session:
-        world = World(Faulty(path, rates), {}, 0)
-        Node(world, LIMITS, session, MonotonicClock(), epoch=time.time_ns()).run(lambda: stop.requested)
-
-
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    endpoint, path, rates = sys.argv[1:]
+    simulate(Faulty(path, rates), endpoint)

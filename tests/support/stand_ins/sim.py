@@ -37,13 +37,15 @@ class Traced(FakeBody):
         return values[0]
 
 
-def main(endpoint, path):
+def simulate(body, endpoint):
+    """Run a sim node with a body until a signal ends it."""
     stop = stop_on_signals()
     codec.prime()
     with open_client(endpoint, role="driver") as session:
-        world = World(Traced(path), {}, 0)
+        world = World(body, {}, 0)
         Node(world, LIMITS, session, MonotonicClock(), epoch=time.time_ns()).run(lambda: stop.requested)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    endpoint, path = sys.argv[1:]
+    simulate(Traced(path), endpoint)
