@@ -15,7 +15,6 @@ from tailor.tools.viewer.explanations.explanation import Explanation, FreeParame
 from tailor.tools.viewer.explanations.situation import Situation
 
 SHOWN_S = 0.005  # smaller differences print as nothing
-NO_BOUND = "no bound on the models' optimum"
 GOOD_RATIO = 1.02  # values within 2 % of the best are equally good at the accuracy of the models
 
 
@@ -34,9 +33,7 @@ def duration_table(explanation: Explanation) -> Table:
     return table
 
 
-def explanation_lines(
-    explanation: Explanation, best_cost: float, decision: Decision, not_certified: str = NO_BOUND
-) -> list[str]:
+def explanation_lines(explanation: Explanation, best_cost: float, decision: Decision, not_certified: str) -> list[str]:
     """Lines below the table of durations; `best_cost`: of a long search; `not_certified`: why there is no bound."""
     lines = [] if explanation.avoided is None else [avoided_text(explanation.avoided)]
     lines += [parameter_text(parameter) for parameter in explanation.parameters]
@@ -97,7 +94,7 @@ def certified_gap_pct(report: RefinementReport | None, chosen_cost: float) -> fl
     return max(0.0, 100 * (chosen_cost / report.best_s * (1 + report.gap_pct / 100) - 1))
 
 
-def certificate_text(gap_pct: float | None, not_certified: str = NO_BOUND) -> str:
+def certificate_text(gap_pct: float | None, not_certified: str) -> str:
     """Certified gap between the refined choice and the optimum of the models, or why there is none."""
     if gap_pct is None:
         return f"not certified: {not_certified}"

@@ -38,7 +38,7 @@ def test_the_action_after_the_subgoal_would_fail_on_a_straight_way_and_the_lines
     avoided = first.explanation.avoided
     assert (avoided.action, avoided.straight > 0.9, avoided.by_subgoal < 0.02) == ("goToPose", True, True)
     assert [each.explanation and each.explanation.avoided for each in others] == [None]
-    line, *_ = explanation_lines(first.explanation, 4.0, first.decision)
+    line, *_ = explanation_lines(first.explanation, 4.0, first.decision, "")
     assert re.fullmatch(r"subgoal asserted: .* goToPose .* fail with 9\d %, by way of the subgoal with 1 %", line)
     assert fields_of(first.explanation)["avoided"]["action"] == "goToPose"
 
