@@ -14,6 +14,7 @@ from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.values import Array
 from tailor.schemas.messages import ActionFinished, Message, Subgoals
+from tailor.tools.lockstep.episode_extraction import arguments_of
 from tailor.tools.lockstep.run import Run
 from tailor.tools.lockstep.task_sampler import sampler_of
 
@@ -83,8 +84,7 @@ def _arrivals(run: Run, domain: Domain) -> Iterator[tuple[Action, Array, Message
             first = subgoals.actions[0] if subgoals.actions else None
             if first is not None and first.action == message.action:
                 action = domain.actions[message.action]
-                values = np.array([[parameter.value for parameter in first.parameters]])
-                yield action, action.arguments(values)[0], truth
+                yield action, arguments_of(action, first), truth
 
 
 def _motions(run: Run, domain: Domain) -> list[Message]:

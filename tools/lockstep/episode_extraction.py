@@ -97,7 +97,8 @@ class EpisodeExtractor:
             names = ", ".join(self._domain.actions)
             raise UsageError(f"recorded action '{status.action}', expected one of {self._domain.robot}: {names}")
         instance, action = self._subgoals.actions[0], self._domain.actions[status.action]
-        return _Running(status.action_index, instance, action, _goal(action, instance), self._is_in_context(action))
+        goal = arguments_of(action, instance)
+        return _Running(status.action_index, instance, action, goal, self._is_in_context(action))
 
     def _adopt(self, run: _Running, new: InstantiatedAction, elapsed_s: float) -> None:
         """Start the episode anew if the goal of the running action changed; its step may have another number now.
@@ -105,11 +106,11 @@ class EpisodeExtractor:
         What has failed by then has failed on its way to the former goal.
         """
         same = (new.action, new.asserted) == (run.instance.action, run.instance.asserted)
-        if not same or np.allclose(_goal(run.action, new), run.goal, atol=1e-6):
+        if not same or np.allclose(arguments_of(run.action, new), run.goal, atol=1e-6):
             return
         if run.failure:
             self._add(run, elapsed_s, run.failure, done=False)
-        run.instance, run.goal, run.ticks, run.motions = new, _goal(run.action, new), [], []
+        run.instance, run.goal, run.ticks, run.motions = new, arguments_of(run.action, new), [], []
         run.in_context, run.start, run.failure = self._is_in_context(run.action), None, ""
 
     def _is_in_context(self, action: Action) -> bool:
@@ -160,7 +161,7 @@ class EpisodeExtractor:
         ticks, duration_s, work_j = np.stack(run.ticks), elapsed_s - run.begun_s, self._work(run.motions)
         number, start, place = len(self.episodes), ticks[0], run.in_context
         episode = Episode(number, start, ticks, duration_s, not failure, failure, done, work_j, in_context=place)
-        self.episodes.append((run.action.duration_model.split("/", maxsplit=1)[0], episode))
+        self.episodes.append((data_set_of(run.action), episode))
 
     def _work(self, motions: list[Message | None]) -> Array | None:
         """Joules of the drives from each tick to the next; None if a state of motion is missing."""
@@ -171,7 +172,13 @@ class EpisodeExtractor:
         return work_j if np.isfinite(work_j).all() else None
 
 
-def _goal(action: Action, instance: InstantiatedAction) -> Array:
+def data_set_of(action: Action) -> str:
+    """Name of the data set of the action's episodes: actions that share a duration model share it."""
+    return action.duration_model.split("/", maxsplit=1)[0]
+
+
+def arguments_of(action: Action, instance: InstantiatedAction) -> Array:
+    """Arguments of the controller for an action of a message, shape (k,)."""
     values = np.array([[parameter.value for parameter in instance.parameters]])
-    goal: Array = action.arguments(values)[0]
-    return goal
+    arguments: Array = action.arguments(values)[0]
+    return arguments

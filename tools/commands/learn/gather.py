@@ -19,6 +19,7 @@ from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.progress import gathered, note, shown
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.lockstep.bodies import check_profile
+from tailor.tools.lockstep.episode_extraction import data_set_of
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 from tailor.tools.parallel.steps import counted
@@ -127,7 +128,7 @@ def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[
     declared = domains.load(domain).actions
     for action in requested:
         random_episodes.check_action(domain, action, beside)
-    modelled = {each.duration_model.split("/")[0] for each in declared.values() if each.context or not beside}
+    modelled = {data_set_of(each) for each in declared.values() if each.context or not beside}
     if not modelled:
         raise UsageError(f"no action of {domain} has a context of objects, expected one to gather beside them")
     return list(dict.fromkeys(requested)) or sorted(modelled)

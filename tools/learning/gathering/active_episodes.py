@@ -26,6 +26,7 @@ from tailor.tools.learning.gathering.refined_choices import Choice, read_choices
 from tailor.tools.learning.gathering.situations import situations
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
+from tailor.tools.lockstep.episode_extraction import data_set_of
 from tailor.tools.parallel.pool import completed
 from tailor.tools.parallel.steps import Step, counted
 
@@ -133,7 +134,7 @@ def _pool_path(active: Active, first: int) -> Path:
 def _pool(active: Active) -> list[Choice]:
     paths = [_pool_path(active, first) for first in range(0, len(active.situations), CHUNK)]
     widths = {
-        (action.duration_model.split("/")[0], name): len(action.parameters)
+        (data_set_of(action), name): len(action.parameters)
         for name, action in domains.load(active.domain).actions.items()
     }
     return [choice for path in paths for choice in read_choices(path, widths)]

@@ -11,14 +11,14 @@ import numpy as np
 from tailor.executive import domains
 from tailor.executive.core.state import Output
 from tailor.executive.deliberation.context import Settings, make_context
-from tailor.executive.interfaces.action import Action
 from tailor.executive.replay import RecordedTick
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import InstantiatedAction, RefinementReport, Subgoals
+from tailor.schemas.messages import RefinementReport, Subgoals
 from tailor.schemas.parsed_files import read_json
 from tailor.simnodes.body import Body
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models
+from tailor.tools.lockstep.episode_extraction import arguments_of, data_set_of
 
 DECISION_S = 5.0  # by then the first refinement is finished, or the situation is left out
 MIN_PREDICTED_S = 0.3  # a shorter action has no ticks to learn from
@@ -96,18 +96,12 @@ def refined_choices(domain_name: str, scenario: str, seed: int, zoo: str, body: 
         assert decision.subgoals is not None
         return [
             Choice(
-                domain.actions[each.action].duration_model.split("/")[0],
+                data_set_of(domain.actions[each.action]),
                 each.action,
-                tuple(_arguments(domain.actions[each.action], each)),
+                tuple(arguments_of(domain.actions[each.action], each).tolist()),
                 each.spread_s,
             )
             for each in decision.subgoals.actions
             if each.predicted_s >= MIN_PREDICTED_S
         ]
     return []
-
-
-def _arguments(action: Action, instance: InstantiatedAction) -> list[float]:
-    values = np.array([[parameter.value for parameter in instance.parameters]])
-    arguments: list[float] = action.arguments(values)[0].tolist()
-    return arguments

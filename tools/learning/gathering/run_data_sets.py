@@ -11,6 +11,7 @@ from tailor.models.episodes.episodes import Episode, write_part
 from tailor.models.episodes.manifest import write_manifest
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec, argument_names
 from tailor.tools.learning.gathering.manifests import argument_ranges, check_resumable, context_entry, source_entries
+from tailor.tools.lockstep.episode_extraction import data_set_of
 
 
 def prepare(
@@ -51,7 +52,7 @@ def create(manifests: Mapping[Path, dict[str, Any]], resume: bool) -> None:
 
 def modelled_actions(domain: str) -> list[str]:
     """Actions that have a duration model, which are the names of the data sets."""
-    return sorted({action.duration_model.split("/")[0] for action in domains.load(domain).actions.values()})
+    return sorted({data_set_of(action) for action in domains.load(domain).actions.values()})
 
 
 def write(domain: str, folder: Path, part: str, cut: Sequence[tuple[str, Episode]]) -> None:
