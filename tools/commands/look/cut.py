@@ -10,6 +10,7 @@ from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_files import beside
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.selection_flags import configure_selection
 
@@ -48,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
     # the first message need not be the earliest
     start_ns = zero_ns + round(arguments.start * 1e9) if arguments.start else 0
     end_ns = 2**64 if arguments.end is None else zero_ns + round(arguments.end * 1e9)
-    target: Path = arguments.output or recording.path.with_name(f"{recording.path.stem}-cut.mcap")
+    target: Path = arguments.output or beside(recording.path, "-cut.mcap")
 
     def keep(key: str, ros_type: str, log_ns: int) -> bool:
         return start_ns <= log_ns < end_ns and wanted.wants(key, ros_type)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.mcap.scan import DamageReport, scan
+from tailor.tools.cli.output_files import beside
 from tailor.tools.cli.plain_text import plain
 
 
@@ -28,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not damage.text():
         _print(arguments.json, {"file": str(source), "damage": ""}, f"{source}: not damaged, nothing to recover")
         return 0
-    target: Path = arguments.output or source.with_name(f"{source.stem}-recovered.mcap")
+    target: Path = arguments.output or beside(source, "-recovered.mcap")
     copied = copy(source, target, lambda *_: True, {})
     found = {
         "file": str(source),

@@ -22,6 +22,7 @@ from tailor.schemas.reason_text import reason_text
 from tailor.simnodes.reasons import ArmRefusal, Mode
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, key_advice, open_bus
+from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.operator.arming_exchange import WAIT_S, Exchange, Outcome
 from tailor.tools.operator.stop_button import HEAR_S, driver_states
@@ -110,9 +111,8 @@ def _executive_sender(session: Session) -> str:
                 scenarios[sample.sender] = sample.message.scenario
         time.sleep(POLL_S)
     if len(scenarios) > 1:
-        named = ", ".join(f"{sender} ({scenario})" for sender, scenario in sorted(scenarios.items())[:MAX_NAMED])
-        more = f" and {len(scenarios) - MAX_NAMED} more" if len(scenarios) > MAX_NAMED else ""
-        raise UsageError(plain(f"{len(scenarios)} executives are running, expected one or --sender: {named}{more}"))
+        named = abbreviated([f"{sender} ({scenario})" for sender, scenario in sorted(scenarios.items())], MAX_NAMED)
+        raise UsageError(plain(f"{len(scenarios)} executives are running, expected one or --sender: {named}"))
     return next(iter(scenarios), "")
 
 
