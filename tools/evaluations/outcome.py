@@ -13,6 +13,7 @@ from tailor.tools.lockstep.run import Run
 from tailor.tools.lockstep.task_sampler import sampler_of
 
 FIRST_SEED = 1_000_000  # of evaluations; settings are chosen on smaller seeds
+OTHER_NOISE = 500_000  # between the `noise` of two runs from the same start
 
 
 @dataclass(frozen=True, slots=True)

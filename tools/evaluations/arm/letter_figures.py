@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.models.runtime import load_robot
 from tailor.tools.evaluations.arm.perfect_greedy import greedy_velocities
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
 from tailor.tools.evaluations.costs import NO_COSTS, Costs, costs_of
 from tailor.tools.evaluations.progress import tracked
+from tailor.tools.learning.gathering.choosing_models import cached_models
 from tailor.tools.lockstep.run import Run
 from tailor.tools.parallel.pool import completed, in_order
 from tailor.tools.writing.measures import rms_jerk, roughness, waypoint_errors_rad
@@ -92,12 +90,7 @@ def write_letter(mode: WritingMode, letter: str, seed: int, zoo: str) -> Writing
 
 
 def _written(mode: WritingMode, letter: str, seed: int, zoo: str) -> tuple[WritingTrack, Run]:
-    models = Models({"reach/duration": PerfectReach()}, {}) if mode in ORACLES else _models(zoo)
+    perfect = Models({"reach/duration": PerfectReach()}, {})
+    models = perfect if mode in ORACLES else cached_models(RecordedBody.robot, zoo)
     velocities = greedy_velocities(letter, seed) if mode == PERFECT_GREEDY else ()
     return write(letter, mode, models, seed, RecordedBody(), velocities)
-
-
-@lru_cache(maxsize=2)
-def _models(zoo: str) -> Models:
-    """Loaded once a process."""
-    return Models(*load_robot(RecordedBody.robot, Path(zoo) if zoo else None))

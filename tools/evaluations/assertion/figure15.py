@@ -119,7 +119,7 @@ def _draw(task: Task, seed: int, ground: SubgoalMap, path: Path) -> Path:
         touched = f"{contacts} contact" if contacts == 1 else f"{contacts} contacts"
         result = "succeeded" if succeeded(traced.outcome) else f"failed, {touched}"
         tracks.append(replace(traced.track, title=f"{title} ({result})"))
-    draw_subgoal_map(ground, "approachBall", tracks, f"start {seed}", path)
+    draw_subgoal_map(ground, tracks, f"start {seed}", path)
     return path
 
 

@@ -19,12 +19,11 @@ from tailor.tools.figures.track import Track
 ARROW_M = 0.3
 
 
-def draw_subgoal_map(ground: SubgoalMap, action: str, tracks: Sequence[Track], title: str, path: Path) -> None:
+def draw_subgoal_map(ground: SubgoalMap, tracks: Sequence[Track], title: str, path: Path) -> None:
     """Draw into a PNG: seconds to the subgoal, from it, and their sum; below, predicted success and two runs.
 
     Args:
       ground: The search space.
-      action: Name of the action after the subgoal.
       tracks: The run without and the run with assertion; the first has the objects.
       title: Above all.
       path: Where to; its folder is made.
@@ -36,7 +35,7 @@ def draw_subgoal_map(ground: SubgoalMap, action: str, tracks: Sequence[Track], t
     axes = figure.subplots(2, 3)
     tables = (
         ("goToPose to the subgoal (s)", ground.first_s),
-        (f"{action} from there (s)", ground.second_s),
+        ("approachBall from there (s)", ground.second_s),
         ("sum (s)", ground.total_s),
     )
     for axis, (name, table) in zip(axes[0], tables, strict=True):

@@ -28,7 +28,7 @@ from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.live.agreement import agreement, starts_of, with_thresholds
 from tailor.tools.evaluations.live.bus_run import NullScreen, run_of
 from tailor.tools.evaluations.live.live_plot import draw_agreement
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
+from tailor.tools.evaluations.outcome import OTHER_NOISE, Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
@@ -37,7 +37,6 @@ from tailor.tools.launch.hosting import private_bus
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.system import run_system
 
-NOISE_STRIDE = 500_000  # between the noise seeds of two lock-step runs of a start
 MARGIN_PCT = 5.0  # fixed before the first run: half of the improvement by refinement
 LIVE, REPEATED = "live", "lock-step, repeated"
 Runs = Mapping[int, Outcome]  # by seed
@@ -93,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _lockstep(task: Task, arguments: argparse.Namespace, seeds: Sequence[int]) -> dict[int, list[Outcome]]:
     """Lock-step runs of every start, one more than requested."""
     refinement = replace(RefinementSettings(), horizon=arguments.horizon)
-    variants = [Variant(f"noise-{k}", refinement, noise=k * NOISE_STRIDE) for k in range(arguments.repeats + 1)]
+    variants = [Variant(f"noise-{k}", refinement, noise=k * OTHER_NOISE) for k in range(arguments.repeats + 1)]
     found = run_all(task, variants, seeds, arguments.jobs, arguments.store, "lock-step")
     return {seed: [found[variant.name][seed] for variant in variants] for seed in seeds}
 

@@ -9,9 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.live.agreement import Starts, agreement
-from tailor.tools.evaluations.pages.plots import ACCENT, INK, PALE
+from tailor.tools.evaluations.pages.plots import ACCENT, INK, PALE, saved
 
 COLOURS = (ACCENT, INK)
 
@@ -48,6 +47,4 @@ def draw_agreement(pairs: Mapping[str, Starts], margin_pct: float, path: Path) -
     right.set(ylim=(-0.6, len(pairs) - 0.4), xlabel="longer than the start's mean in lock-step (%)")
     right.set_title("each start, and the mean with its 95 % interval")
     right.legend(frameon=False, loc="upper right")
-    with whole_output(path) as whole:
-        figure.savefig(whole, dpi=110)
-    return path
+    return saved(figure, path)

@@ -107,7 +107,8 @@ def run(arguments: argparse.Namespace) -> int:
     rows = [_row(point, found[point], settings.starts) for point in points]
     plots = {}
     if arguments.report is not None:
-        plots["improvement over episodes"] = _plot(rows, arguments.report / "learning-curves.png")
+        path = arguments.report / "learning-curves.png"
+        plots["improvement over episodes"] = draw_curves(dict(_curves(rows)), path)
     title = f"Learning curves of the gain: {domain}, {settings.scenario}"
     about = {"first_seed": settings.seed, "seed_derived": arguments.seed is None, "source_sha256": runs_sha256(domain)}
     provenance = {**about, "models_sha256": "of each set its own"}
@@ -195,10 +196,6 @@ def _errors(settings: argparse.Namespace, zoo: Path) -> dict[str, float]:
         for name, key in columns.items()
         if any(key in row for row in made)
     }
-
-
-def _plot(rows: Sequence[dict[str, Any]], path: Path) -> Path:
-    return draw_curves(dict(_curves(rows)), path, "episodes of each action", "improvement by refinement (%)")
 
 
 def _curves(rows: Sequence[dict[str, Any]]) -> Iterator[tuple[str, list[tuple[float, float, float, float]]]]:

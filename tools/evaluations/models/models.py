@@ -23,7 +23,6 @@ from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions
 
 RUNS = 400  # of each scenario of --on-policy
-FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
 REMARKS = (
     *model_rows.REMARKS,
     "chosen in: fresh runs of the executive in that scenario with these models; empty: random arguments",
@@ -61,7 +60,7 @@ def _chosen_rows(domain: str, arguments: argparse.Namespace) -> list[Row]:
     robot = domains.load(domain).robot
     durations, _ = load_robot(robot, Path(arguments.zoo) if arguments.zoo else models_folder(robot))
     first = seeds_of(domain, arguments).first
-    seed, where = FIRST_RUN_SEED + first % RUN_SEEDS, (arguments.zoo, arguments.jobs, arguments.store)
+    seed, where = fresh.run_seed(first), (arguments.zoo, arguments.jobs, arguments.store)
     rows = []
     for scenario in tracked(arguments.on_policy, "scenarios"):
         folder = fresh.chosen(robot, (scenario,), arguments.runs or RUNS, seed, *where)

@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     spaces = {action: feature_space_of(arguments.robot, action) for action in modelled_actions(domain)}
     for action in spaces:
         read_manifest(_random(action, arguments))  # raises before hours of runs, not after
-    first = 1000 + arguments.seed % 1_000_000  # one round to learn from, and one to judge by
+    first = fresh.run_seed(arguments.seed)  # one round to learn from, and one to judge by
     folders = [fresh.chosen(*runs, seed, *where) for seed in (first, first + 1)]
     rows = [
         row

@@ -66,7 +66,5 @@ def _write(path: Path, features: NDArray[Any], targets: NDArray[Any], kind: str)
 
 def _predictions(output: str) -> list[Any]:
     """Third column of the lines "number actual predicted ..." that WEKA prints."""
-    lines = re.findall(
-        r"^\s*\d+\s+\S+\s+(\S+)", output.rsplit("Predictions on test data", maxsplit=1)[-1], re.MULTILINE
-    )
-    return list(lines)
+    lines = output.rsplit("Predictions on test data", maxsplit=1)[-1]
+    return re.findall(r"^\s*\d+\s+\S+\s+(\S+)", lines, re.MULTILINE)

@@ -17,12 +17,11 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.refinement.objective.settings import RefinementSettings
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import OTHER_NOISE, Outcome, Task, Variant
 from tailor.tools.evaluations.task_runs import run_all
 
 Free = tuple[str, str, float, float]  # label, quantity, lower, upper
 N_AGAIN = 3  # repetitions of the oracle's choice
-OTHER_NOISE = 500_000
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,8 @@ from tailor.executive.interfaces.domain import Domain
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.dependencies import SEARCH, dependencies
 from tailor.tools.evaluations.journal import Journal
-from tailor.tools.evaluations.oracles.grid import N_AGAIN, OTHER_NOISE, Oracle
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.oracles.grid import N_AGAIN, Oracle
+from tailor.tools.evaluations.outcome import OTHER_NOISE, Outcome, Task, Variant
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.task_runs import run_one, run_task
 from tailor.tools.lockstep.run import Run

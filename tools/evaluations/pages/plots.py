@@ -28,7 +28,7 @@ def draw_pairs(greedy_s: Sequence[float], refined_s: Sequence[float], path: Path
     if len(gain):
         right.axvline(float(gain.mean()), color=ACCENT, label=f"mean {gain.mean():.1f} %")
         right.legend(frameon=False)
-    return _saved(figure, path)
+    return saved(figure, path)
 
 
 def draw_shares(row: dict[str, Any], path: Path) -> Path:
@@ -49,26 +49,18 @@ def draw_shares(row: dict[str, Any], path: Path) -> Path:
     for i, line in enumerate(fields):
         for j, share in enumerate(line):
             right.text(j, i, f"{share:.1f} %", ha="center", va="center")
-    return _saved(figure, path)
+    return saved(figure, path)
 
 
-def _saved(figure: Figure, path: Path) -> Path:
+def saved(figure: Figure, path: Path) -> Path:
+    """Save a figure as a PNG, whose folder is made."""
     with whole_output(path) as whole:
         figure.savefig(whole, dpi=110)
     return path
 
 
-def draw_curves(
-    curves: Mapping[str, Sequence[tuple[float, float, float, float]]], path: Path, x_label: str, y_label: str
-) -> Path:
-    """Curves with intervals over a logarithmic axis.
-
-    Args:
-      curves: By name, points of x, y, and the lower and upper end of y's interval.
-      path: Of the PNG.
-      x_label: Of the logarithmic axis.
-      y_label: Of the other axis.
-    """
+def draw_curves(curves: Mapping[str, Sequence[tuple[float, float, float, float]]], path: Path) -> Path:
+    """Learning curves with intervals: by name, points of episodes, improvement, and the ends of its interval."""
     figure = Figure(figsize=(7, 4.2), layout="constrained")
     axis = figure.subplots()
     for (name, points), colour in zip(curves.items(), (INK, ACCENT, "#b5651d", "#7a5195"), strict=False):
@@ -76,9 +68,9 @@ def draw_curves(
         axis.plot(x, y, marker="o", color=colour, label=name)
         axis.fill_between(x, low, high, color=colour, alpha=0.15)
     axis.axhline(0, color=PALE)
-    axis.set(xscale="log", xlabel=x_label, ylabel=y_label)
+    axis.set(xscale="log", xlabel="episodes of each action", ylabel="improvement by refinement (%)")
     places = sorted({point[0] for points in curves.values() for point in points})
     axis.set_xticks(places, [f"{x:g}" for x in places])
     axis.minorticks_off()
     axis.legend(frameon=False)
-    return _saved(figure, path)
+    return saved(figure, path)

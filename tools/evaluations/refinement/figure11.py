@@ -17,7 +17,7 @@ import numpy as np
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import add_count
-from tailor.tools.evaluations.outcome import Outcome, Task, Variant
+from tailor.tools.evaluations.outcome import OTHER_NOISE, Outcome, Task, Variant
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
 from tailor.tools.evaluations.refinement.sweep import Sweep, sweep_of
 from tailor.tools.evaluations.refinement.sweep_plot import draw_sweep
@@ -26,7 +26,6 @@ from tailor.tools.evaluations.task_runs import run_all
 from tailor.tools.evaluations.traced_runs import trace_run
 
 PLACE = "pos2"  # where the ball is
-OTHER_NOISE = 500_000  # from one repeat to the next
 TASK = ("soccer", "approach-dribble")
 REMARKS = (
     "angles: how many of the forced ones have a run that ended well; the last row is the mean over the starts",

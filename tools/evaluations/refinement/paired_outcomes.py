@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tailor.tools.evaluations.costs import Costs
 from tailor.tools.evaluations.oracles.baselines import bias_s
 from tailor.tools.evaluations.outcome import Outcome
 from tailor.tools.evaluations.paired_comparison import (
@@ -25,7 +26,7 @@ from tailor.tools.evaluations.paired_comparison import (
     without_intervals,
 )
 
-Outcomes = Mapping[int, Outcome]  # by seed
+Named = Sequence[tuple[str, float]]  # costs by name
 Start = tuple[str, int]  # scenario, seed
 Pair = tuple[Outcome, Outcome]  # from one start: the baseline, and the setting that is judged
 MAX_MORE_POINTS = 0.5  # of failures or contacts, that count as no more
@@ -59,8 +60,8 @@ def columns(pairs: Mapping[Start, Pair], unit: str = "start") -> dict[str, Any]:
         **_shares("failures_pct", pairs.values(), every, lambda outcome: not outcome.achieved),
         **_shares("contacts_pct", pairs.values(), every, lambda outcome: outcome.costs.contacts > 0),
         **_means("energy_j", both, units, lambda outcome: outcome.costs.energy_j),
-        **_arrivals(both, units),
-        **_further(list(pairs.values()), every),
+        **_each("arrival_", both, units, lambda costs: costs.arrival),
+        **_each("", list(pairs.values()), every, lambda costs: costs.further),
         "bias_greedy_s": bias_s(pair[0] for pair in both),
         "bias_refined_s": bias_s(pair[1] for pair in both),
     }
@@ -100,28 +101,16 @@ def costs_no_more(row: Mapping[str, Any]) -> bool:
     )
 
 
-def _arrivals(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
-    names = sorted({name for pair in pairs for outcome in pair for name, _ in outcome.costs.arrival})
+def _each(prefix: str, pairs: Sequence[Pair], units: Units | None, named: Callable[[Costs], Named]) -> dict[str, Any]:
+    """Columns of each of the costs that only some robots or actions have."""
+
+    def cost(name: str, outcome: Outcome) -> float:
+        return dict(named(outcome.costs)).get(name, math.nan)
+
     found: dict[str, Any] = {}
-    for name in names:
-        found |= _means(f"arrival_{name}", pairs, units, partial(_arrival, name))
+    for name in sorted({name for pair in pairs for outcome in pair for name, _ in named(outcome.costs)}):
+        found |= _means(f"{prefix}{name}", pairs, units, partial(cost, name))
     return found
-
-
-def _arrival(name: str, outcome: Outcome) -> float:
-    return dict(outcome.costs.arrival).get(name, float("nan"))
-
-
-def _further(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
-    names = sorted({name for pair in pairs for outcome in pair for name, _ in outcome.costs.further})
-    found: dict[str, Any] = {}
-    for name in names:
-        found |= _means(name, pairs, units, partial(_further_cost, name))
-    return found
-
-
-def _further_cost(name: str, outcome: Outcome) -> float:
-    return dict(outcome.costs.further).get(name, float("nan"))
 
 
 def _means(name: str, pairs: Sequence[Pair], units: Units | None, cost: Callable[[Outcome], float]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from tailor.executive.interfaces.values import Array
-from tailor.tools.cli.output_files import whole_output
+from tailor.tools.evaluations.pages.plots import saved
 from tailor.tools.evaluations.refinement.sweep import Sweep
 from tailor.tools.figures.paths import draw_side_by_side, size_in
 from tailor.tools.figures.signed_degrees import count_both_ways
@@ -28,8 +28,7 @@ def draw_sweep(sweep: Sweep, tracks: Sequence[Track], path: Path) -> None:
       tracks: Runs at three angles of it.
       path: Where to; its folder is made.
     """
-    with whole_output(path) as whole:
-        figure_of(sweep, tracks).savefig(whole, dpi=110)
+    saved(figure_of(sweep, tracks), path)
 
 
 def figure_of(sweep: Sweep, tracks: Sequence[Track]) -> Figure:

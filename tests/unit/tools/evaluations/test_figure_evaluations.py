@@ -159,7 +159,7 @@ def test_the_chosen_subgoal_costs_what_was_predicted_for_it(asserted):
 
 def test_ground_is_drawn(asserted, tmp_path):
     watched, ground = asserted
-    draw_subgoal_map(ground, "approachBall", [watched.track] * 2, "start", tmp_path / "ground.png")
+    draw_subgoal_map(ground, [watched.track] * 2, "start", tmp_path / "ground.png")
     assert (tmp_path / "ground.png").stat().st_size > 10_000
 
 
