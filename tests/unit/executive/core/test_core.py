@@ -179,12 +179,12 @@ def test_a_goal_too_long_for_a_status_is_refused_and_the_longest_one_is_publishe
     assert statuses[-1].goal == longest
 
 
-def test_place_that_moves_redirects_the_running_action():
-    def world(n, given, x):
-        shift = 0.3 if n >= 6 else 0.0
-        return Inputs((odometry(n * TICK, x, n, shift), driver(n * TICK)), given.goal)
+def moved_in_tick_6(n, given, x):
+    return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
 
-    run = list(drive(line_context(), goal="(visited a)", world=world))
+
+def test_place_that_moves_redirects_the_running_action():
+    run = list(drive(line_context(), goal="(visited a)", world=moved_in_tick_6))
     assert run[-1][0].task.result == "achieved"
     assert run[-1][2] == pytest.approx(0.8, abs=0.06)
     finished = messages(run, ActionFinished)
@@ -194,10 +194,7 @@ def test_place_that_moves_redirects_the_running_action():
 
 @pytest.mark.parametrize("checks", [200, 10])
 def test_predictions_of_a_redirected_action_do_not_count_the_ticks_that_its_decision_took(checks):
-    def world(n, given, x):
-        return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
-
-    run = list(drive(line_context(), goal="(visited a)", world=world, checks=checks))
+    run = list(drive(line_context(), goal="(visited a)", world=moved_in_tick_6, checks=checks))
     (finished,) = messages(run, ActionFinished)
     assert len(messages(run, Subgoals)) == 2
     assert finished.predicted_s == pytest.approx(finished.actual_s)
@@ -341,10 +338,7 @@ def test_action_whose_effects_hold_already_is_done_and_not_aborted():
 
     context.domain.anchor = anchor
 
-    def world(n, given, x):
-        return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
-
-    run = list(drive(context, goal="(visited a)", world=world, ticks=10))
+    run = list(drive(context, goal="(visited a)", world=moved_in_tick_6, ticks=10))
     ended = messages(run, ActionFinished)
     assert [(f.outcome, f.reason) for f in ended] == [("done", Reason.EFFECTS_HOLD)]
     assert run[-1][0].task.result == "achieved"
