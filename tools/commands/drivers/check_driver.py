@@ -48,6 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--yes", action="store_true", help="hardware: people know, and the robot has two metres of room"
     )
+    parser.add_argument("--reset", action="store_true", help="release an emergency stop that is latched before")
     configure_bus(parser)
 
 
@@ -65,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         except NoDriverError as error:
             raise UsageError(str(error)) from error
         bench = Bench(link, domain, spec, arguments.speed)
-        _check_free(bench, arguments.robot)
+        _check_free(bench, arguments.robot, arguments.reset)
         simulated = _is_simulator(people, arguments.robot)
         if not simulated:
             _confirm(arguments.robot, arguments.yes)
@@ -103,7 +104,7 @@ def _watched(bench: Bench, arguments: argparse.Namespace, named: list[str], kind
         return _checked(bench, arguments, named, kind)
     except EStopPressed as error:
         bench.estop()  # a reset of our own may have come after theirs
-        advice = f"it stays latched; `tailor arm {arguments.robot} --reset` releases it"
+        advice = f"it stays latched; `tailor arm {arguments.robot} --reset` releases it, or --reset for another check"
         note(f"tailor check-driver: {error}: the check ends, and {advice}", to_stderr=True)
         return None
     finally:
@@ -162,7 +163,7 @@ def _confirm(robot: str, agreed: bool) -> None:
         raise UsageError(f"{robot} is hardware that will move, expected --yes or a terminal to confirm")
     print(
         f"{robot} is no simulator. It will move slowly, half a metre to all sides, and all drivers are e-stopped three "
-        "times. An e-stop that is latched now is released; one that is pressed later ends the check."
+        "times. An e-stop that is pressed meanwhile ends the check."
     )
     try:
         typed = input(f"People stand clear, the hardware e-stop is at hand? Type {robot} to go on: ")
@@ -172,8 +173,8 @@ def _confirm(robot: str, agreed: bool) -> None:
         raise UsageError("not confirmed, so nothing was moved")
 
 
-def _check_free(bench: Bench, robot: str) -> None:
-    """Raise UsageError unless one driver is heard, and nobody uses it.
+def _check_free(bench: Bench, robot: str, may_release: bool) -> None:
+    """Raise UsageError unless one driver is heard, and nobody uses or stopped it.
 
     A forgotten simulator beside hardware would pass for the only driver, and the hardware would move unasked.
     """
@@ -186,3 +187,5 @@ def _check_free(bench: Bench, robot: str) -> None:
         raise UsageError(f"several drivers of {robot} are on the bus, or one has just started anew; expected one")
     if state.mode == "armed":
         raise UsageError(f"{robot} is armed for {state.armed_sender}, expected a driver that nobody uses")
+    if state.mode == "estopped" and not may_release:
+        raise UsageError(f"{robot} is e-stopped ({state.detail or state.reason}), expected --reset to release that")

@@ -33,8 +33,8 @@ class Link:
         return [Heard(self.at_s, self.at_s, "driver", state, "", "d" * 32, 1) for state in states]
 
 
-def free(*drivers):
-    check_driver._check_free(Bench(Link(*drivers), None, None, 0.1), "agilo")
+def free(*drivers, may_release=False):
+    check_driver._check_free(Bench(Link(*drivers), None, None, 0.1), "agilo", may_release)
 
 
 def test_one_driver_that_nobody_uses_is_tried():
@@ -43,6 +43,14 @@ def test_one_driver_that_nobody_uses_is_tried():
         free()
     with pytest.raises(UsageError, match="agilo is armed for "):
         free((7, "armed"))
+
+
+@pytest.mark.promise("P38")
+def test_one_that_somebody_has_stopped_is_tried_once_people_release_it():
+    """Whoever stopped it may stand before it: `--yes` of a script released the e-stop, and the robot moved."""
+    with pytest.raises(UsageError, match=r"agilo is e-stopped \(.*\), expected --reset to release that"):
+        free((7, "estopped"))
+    free((7, "estopped"), may_release=True)
 
 
 def test_none_of_several_drivers_is_tried():
