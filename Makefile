@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OLD := import sys; sys.exit(sys.version_info < (3, 11) and "tailor needs Python 3.11 or newer; set PYTHON=python3.11")
 
-.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages test-new-robots goldens models ros2 lint types bench docs clean
+.PHONY: setup demo demo-arm test test-all test-faults test-mutants test-packages test-new-robots test-oldest goldens models ros2 lint types bench docs clean
 
 setup: .venv/.installed
 
@@ -50,6 +50,12 @@ test-packages: setup  # new robots, the tutorial and foreign packages, from the 
 
 test-new-robots: setup  # of those a new robot of each kind and one foreign package, two at a time: 2 minutes
 	$(BIN)/python -m pytest -n 2 --dist load tests/e2e/packages/test_new_robot.py -k 'no_line_edited or editable'
+
+test-oldest:  # the tests with the oldest versions that pyproject.toml allows, all at once; pip resolves to none but the newest
+	$(PYTHON) -m venv out/oldest
+	out/oldest/bin/python -m pip install --quiet --disable-pip-version-check uv
+	out/oldest/bin/python -m uv pip install --quiet --python out/oldest/bin/python --resolution lowest-direct -e '.[test]'
+	out/oldest/bin/python -m pytest -m 'not slow' -n 3 --dist loadgroup
 
 goldens: setup  # renews the golden recordings and prints the differences
 	$(BIN)/python -m tailor.tools.goldens.renew
