@@ -20,7 +20,9 @@ from tailor.simnodes.services import NAMES, Services
 from tailor.simnodes.world import World
 
 PERIOD_NS = 10_000_000  # world time of one period; the guard's stop is late by at most as much
-MAX_AT_ONCE = 10  # periods to catch up after a stall; the world loses the rest
+# Periods to catch up after a stall, of which the world loses the rest, or that were requested: an e-stop waits for
+# those that have begun, and fifty at once would publish more than the bus takes.
+MAX_AT_ONCE = 10
 
 
 class Node:
@@ -87,7 +89,7 @@ class Node:
         self._receive(period.now_ns)
         elapsed, steps = 1 + period.skipped, min(1 + period.skipped, MAX_AT_ONCE)
         if self._services.paused:
-            steps, self._services.steps_due = self._services.steps_due, 0
+            steps = self._services.take_steps(MAX_AT_ONCE)
             self._frozen_ns += (elapsed - steps) * self._loop.period_ns
         for _ in range(steps):
             self._world.body.command(self.driver.set_points(guard_ns, self._world.kept))

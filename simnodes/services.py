@@ -10,7 +10,7 @@ from tailor.runtime.bus.service import ServiceRequest, ServiceServer
 from tailor.simnodes.world import Event, World
 
 NAMES = ("reset", "place", "pause", "step")
-MAX_STEPS = 6000  # in one request: a minute of 10 ms
+MAX_STEPS = 6000  # that may be due: a minute of 10 ms
 MAX_EVENTS = 100  # of one start
 MAX_VALUE = 1000.0  # m, rad, m/s or rad/s: the physics diverge far beyond
 
@@ -23,7 +23,7 @@ class Services:
 
     Attributes:
       paused: The world stands still, except for requested steps.
-      steps_due: Periods to run while paused.
+      steps_due: Periods that are to be run, and are not yet; none unless paused.
     """
 
     def __init__(self, world: World, servers: Mapping[str, ServiceServer], on_reset: Callable[[], None]) -> None:
@@ -40,6 +40,12 @@ class Services:
             request = server.poll()
             if request is not None:
                 self._reply(name, request)
+
+    def take_steps(self, most: int) -> int:
+        """The number of periods to run now, of those that are due."""
+        steps = min(self.steps_due, most)
+        self.steps_due -= steps
+        return steps
 
     def _reply(self, name: str, request: ServiceRequest) -> None:
         try:
@@ -58,6 +64,7 @@ class Services:
         if "events" in argument and "start" not in argument:
             raise ValueError("events without a start, expected a start of their own")
         events = self._events(argument.get("events", []))
+        self.steps_due = 0  # they were requested of another world
         self._world.reset(seed, self._numbers(argument["start"]) if "start" in argument else None, events)
         self._on_reset()
         return "reset"
@@ -81,7 +88,7 @@ class Services:
     def _pause(self, argument: Any) -> str:
         if type(argument) is not bool:
             raise ValueError("expected true or false")
-        self.paused = argument
+        self.paused, self.steps_due = argument, 0
         return "paused" if argument else "running"
 
     def _step(self, argument: Any) -> str:
@@ -89,6 +96,8 @@ class Services:
             raise ValueError("pause first")
         if type(argument) is not int or not 1 <= argument <= MAX_STEPS:
             raise ValueError(f"expected a number of periods, 1 to {MAX_STEPS}")
+        if self.steps_due + argument > MAX_STEPS:
+            raise ValueError(f"{self.steps_due} periods are still due, expected at most {MAX_STEPS} with the new ones")
         self.steps_due += argument
         return f"{argument} periods"
 

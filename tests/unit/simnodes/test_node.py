@@ -14,6 +14,7 @@ from tailor.schemas.topics import TOPICS, key_of
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.node import MAX_AT_ONCE, Node
+from tailor.simnodes.services import MAX_STEPS
 from tailor.simnodes.world import World
 from tests.support.stand_ins.body import FakeBody
 from tests.unit.simnodes.test_services import Request, Server
@@ -144,7 +145,19 @@ def test_a_paused_world_moves_in_requested_steps_alone_and_the_guard_waits_for_i
     robot.bus.servers["pause"].waiting.append(Request("true"))
     assert robot.periods(100) == []
     robot.bus.servers["step"].waiting.append(Request("31"))
-    assert robot.periods(1) == [0.5] * 30 + [0.0], "its guard counts the time of the world"
+    assert robot.periods(5) == [0.5] * 30 + [0.0], "its guard counts the time of the world"
+
+
+@pytest.mark.promise("P38")
+def test_an_estop_waits_for_few_of_many_requested_steps():
+    robot = moving_robot()
+    robot.bus.servers["pause"].waiting.append(Request("true"))
+    robot.bus.servers["step"].waiting.append(Request(str(MAX_STEPS)))
+    assert robot.periods(1) == [0.5] * MAX_AT_ONCE
+    robot.send(EStop(True), "estop", PERSON)
+    assert robot.periods(1) == [0.0] * MAX_AT_ONCE
+    assert robot.bus.states[-1].mode == "estopped"
+    assert len(robot.periods(1000)) == MAX_STEPS - 2 * MAX_AT_ONCE, "the others follow"
 
 
 def test_a_dead_mans_switch_is_held_in_real_time_while_the_world_is_paused():

@@ -104,3 +104,25 @@ def test_services_refuse_what_the_body_cannot_take(name, text, monkeypatch):
 
 def test_stepping_needs_a_pause():
     assert call("step", "1")[1] == (False, "step: pause first")
+
+
+def test_no_more_steps_are_due_than_one_request_may_name():
+    step = Request("4000"), Request("4000")
+    services = Services(World(FakeBody(), {"x": 2.0}, 3), {"step": Server(*step)}, on_reset=lambda: None)
+    services.paused = True
+    services.answer()
+    services.answer()
+    refusal = "step: 4000 periods are still due, expected at most 6000 with the new ones"
+    assert [each.reply for each in step] == [(True, "4000 periods"), (False, refusal)]
+    assert services.steps_due == 4000
+
+
+@pytest.mark.parametrize(("name", "text"), [("pause", "false"), ("pause", "true"), ("reset", "")])
+def test_steps_that_are_still_due_end_with_their_pause_and_their_world(name, text):
+    servers = {"step": Server(Request("4000")), name: Server(Request("null"), Request(text))}
+    services = Services(World(FakeBody(), {"x": 2.0}, 3), servers, on_reset=lambda: None)
+    services.paused = True
+    services.answer()
+    assert services.take_steps(50) == 50
+    services.answer()
+    assert services.steps_due == 0
