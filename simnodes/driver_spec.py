@@ -13,6 +13,7 @@ from tailor.schemas.topics import TOPICS
 from tailor.simnodes.guard import Limit
 from tailor.simnodes.typed_values import finite_number, table_in, tables_in, text
 
+MIN_TIMEOUT_S = 0.1  # from one command of the executive to the next: a guard that waits no longer stops every robot
 MAX_TIMEOUT_S = 1.0  # a guard that waits longer for the next command protects nothing
 
 
@@ -102,7 +103,7 @@ def read_driver_spec(written: str) -> DriverSpec:
 
     Raises:
       ValueError: The text is no TOML, a key is missing or has a value of another type, a limit is not finite, or the
-        timeout exceeds MAX_TIMEOUT_S; the message names the key.
+        timeout is not between MIN_TIMEOUT_S and MAX_TIMEOUT_S; the message names the key.
     """
     return driver_spec(toml_table(written))
 
@@ -141,8 +142,9 @@ def _sensor(name: str, table: Mapping[str, Any]) -> SensorSpec:
 
 def _timeout_ns(command: Mapping[str, Any]) -> int:
     timeout_s = finite_number(command, "timeout_s")
-    if not 0.0 < timeout_s <= MAX_TIMEOUT_S:
-        raise ValueError(f"timeout_s is {timeout_s:g}, expected more than 0 and at most {MAX_TIMEOUT_S:g}")
+    if not MIN_TIMEOUT_S < timeout_s <= MAX_TIMEOUT_S:
+        expected = f"more than {MIN_TIMEOUT_S:g}, the time between two commands, and at most {MAX_TIMEOUT_S:g}"
+        raise ValueError(f"timeout_s is {timeout_s:g}, expected {expected}")
     return round(timeout_s * 1e9)
 
 

@@ -8,12 +8,13 @@ from importlib import resources
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.deliberation.context import PERIOD_NS
 from tailor.executive.interfaces.domain import Axis
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import domain_names
 from tailor.schemas.messages import VelocityCommand
 from tailor.simnodes import driver_spec
-from tailor.simnodes.driver_spec import SensorSpec, shipped_driver_spec
+from tailor.simnodes.driver_spec import MIN_TIMEOUT_S, SensorSpec, shipped_driver_spec
 from tailor.simnodes.guard import Limit
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.main import main
@@ -175,8 +176,9 @@ def test_what_nobody_would_read_in_a_specification_is_refused(tmp_path, line, wr
 @pytest.mark.parametrize(
     ("line", "wrong", "expected"),
     [
-        ("timeout_s = 0.3", "timeout_s = 0", "timeout_s is 0, expected more than 0 and at most 1"),
-        ("timeout_s = 0.3", "timeout_s = 1e9", "timeout_s is 1e\\+09, expected more than 0 and at most 1"),
+        ("timeout_s = 0.3", "timeout_s = 0", "timeout_s is 0, expected more than 0.1, the time between two commands"),
+        ("timeout_s = 0.3", "timeout_s = 0.1", "timeout_s is 0.1, expected more than 0.1, the time between two"),
+        ("timeout_s = 0.3", "timeout_s = 1e9", "timeout_s is 1e\\+09, expected more than 0.1, .*, and at most 1"),
         ("timeout_s = 0.3", "timeout_s = nan", "timeout_s is nan, expected a finite number"),
         ("upper = 0.9", 'upper = "0.9"', "upper is '0.9', expected a finite number"),
         ("upper = 0.9", "upper = inf", "upper is inf, expected a finite number"),
@@ -205,3 +207,7 @@ def test_a_topic_that_nobody_declares_is_named_before_the_bus_is_opened(tmp_path
 
 def test_a_driver_whose_topics_are_all_declared_runs():
     assert driver_spec.driver_spec_to_run("agilo") == driver_spec.shipped_driver_spec("agilo")
+
+
+def test_the_least_timeout_is_the_period_of_the_executive():
+    assert round(1e9 * MIN_TIMEOUT_S) == PERIOD_NS
