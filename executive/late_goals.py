@@ -36,6 +36,6 @@ class LateGoals:
         if arrived_ns is not None:
             self._heard_ns = arrived_ns
 
-    def refusal(self, now_ns: int) -> str:
-        """Why a goal that arrives now does not count; empty: it does."""
-        return f"{self._why}; {AGAIN}" if now_ns < self._until_ns else ""
+    def refusal(self, taken_ns: int) -> str:
+        """Why a goal that this process took from the bus at that time does not count; empty: it does."""
+        return f"{self._why}; {AGAIN}" if taken_ns < self._until_ns else ""

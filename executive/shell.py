@@ -16,6 +16,7 @@ from tailor.executive.late_goals import LateGoals
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.bus.ros_action.server import GoalAction
+from tailor.runtime.bus.service import ServiceRequest
 from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock
 from tailor.runtime.loop import Loop, Period
@@ -129,7 +130,8 @@ class Shell:
         So is one that may have waited while this process or the bus stood still: people were told that nobody responds.
         One that only drops the open goal moves nothing, so it counts.
         """
-        request, late = self._goals.poll(), self._late_goals(period, received)
+        request = self._goals.poll()
+        late = self._late_goals(period, received, request)
         if request is None:
             return first
         goal = request.text.strip() or self._context.problem.goal_text
@@ -148,12 +150,16 @@ class Shell:
         request.accept(f"cancelled: {dropped}" if dropped else "no goal is open")
         return goal if dropped else ""
 
-    def _late_goals(self, period: Period, received: tuple[Sample, ...]) -> str:
-        """Why a goal that has just arrived is too old; called in every tick, after the look at goals."""
+    def _late_goals(self, period: Period, received: tuple[Sample, ...], request: ServiceRequest | None) -> str:
+        """Why this request is too old; called in every tick, after the look at goals.
+
+        Of many that have waited, the last one is served seconds later: the time at which it was taken counts.
+        """
         now_ns = self._clock.now_ns()
         stood_ns = max(now_ns - period.deadline_ns, period.skipped * PERIOD_NS)
         self._late.note(now_ns, stood_ns, max((sample.arrival_ns for sample in received), default=None))
-        return self._late.refusal(now_ns)
+        taken_ns = None if request is None else request.taken_ns
+        return self._late.refusal(now_ns if taken_ns is None else taken_ns)
 
     def _planner_answer(self, period: Period) -> tuple[Sample, ...]:
         """The external planner's answer as an input like any other: numbered, and recorded before it is used."""

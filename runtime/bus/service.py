@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+import time
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
 
 from tailor.schemas.services import MAX_REQUEST_BYTES
 
+MAX_WAITING = 16  # requests of one source, of which a loop serves one in a period
+MAX_NEW = 64  # between two periods: those that cannot wait are refused; of more, zenoh forgets the oldest
+BUSY = f"{MAX_WAITING} other requests are waiting; send this one again"
 ACCEPTED = "accepted"  # response to a request that is carried out from now on; another one says what was done at once
 
 
 class ServiceRequest:
-    """Request of a client; call `accept` or `refuse` exactly once."""
+    """Request of a client; call `accept` or `refuse` exactly once.
+
+    Attributes:
+      text: What is requested.
+      taken_ns: Monotonic time at which this process took it from the bus; None: now. It may have waited since.
+    """
 
     def __init__(self, text: str, respond: Callable[[bool, str], None]) -> None:
         self.text = text
+        self.taken_ns: int | None = None
         self._respond = respond
 
     def accept(self, response: str = ACCEPTED) -> None:
@@ -41,23 +52,50 @@ class QueryableSource:
     request for an empty goal. It gets no reply.
     """
 
-    def __init__(self, queryable: Any, read: Callable[[Any], ServiceRequest | None]) -> None:
-        self._queryable, self._read = queryable, read
+    def __init__(
+        self,
+        queryable: Any,
+        read: Callable[[Any], ServiceRequest | None],
+        now_ns: Callable[[], int] = time.monotonic_ns,
+    ) -> None:
+        self._queryable, self._read, self._now_ns = queryable, read, now_ns
+        self._waiting: deque[tuple[Any, int]] = deque()  # with the time at which each was taken from zenoh
 
     def receive(self) -> ServiceRequest | None:
         """See RequestSource."""
-        query = self._queryable.try_recv()
-        if query is None:
+        self._take()
+        if not self._waiting:
             return None
+        query, taken_ns = self._waiting.popleft()
+        request = self._read(query)
+        if request is not None:
+            request.taken_ns = taken_ns
+        return request
+
+    def _take(self) -> None:
+        """Take all that zenoh has: one that it forgets is told that there is no such service, if anything."""
+        for _ in range(MAX_NEW):
+            query = self._queryable.try_recv()
+            if query is None:
+                return
+            if not self._is_request(query):
+                continue
+            if len(self._waiting) < MAX_WAITING:
+                self._waiting.append((query, self._now_ns()))
+            elif (request := self._read(query)) is not None:
+                request.refuse(BUSY)
+
+    def _is_request(self, query: Any) -> bool:
+        """False for a query that is none, or one that is refused unread."""
         if str(query.key_expr) != str(self._queryable.key_expr):
             query.drop()
-            return None
+            return False
         length = max(len(part) for part in (query.payload or b"", query.attachment or b""))
         if length > MAX_REQUEST_BYTES:  # unread: to decode 400 MB takes a second of the loop that serves it
             query.reply_err(too_long_request(length))
             query.drop()
-            return None
-        return self._read(query)
+            return False
+        return True
 
 
 def no_service(key: str) -> str:

@@ -18,6 +18,7 @@ from tailor.runtime.bus.latch import EStopLatch
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.ros_wires import Announcer, GraphView, RosCall, as_plain, goal_request, ros_call
 from tailor.runtime.bus.service import (
+    MAX_NEW,
     QueryableSource,
     RequestSource,
     ServiceRequest,
@@ -203,7 +204,7 @@ class Session:
     def service_server(self, key: str, *others: RequestSource) -> ServiceServer:
         """Server of the requests under `key`, of ROS 2's if it knows the service, and of others; a loop polls it."""
         sources: list[RequestSource] = [
-            QueryableSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(16)), text_request)
+            QueryableSource(self._zenoh.declare_queryable(key, zenoh.handlers.RingChannel(MAX_NEW)), text_request)
         ]
         if self.keys.announces and key == SERVICES["goal"].pattern:
             from tailor.schemas.ros2 import service
@@ -214,7 +215,7 @@ class Session:
 
     def ros_service(self, named: Named, read: Callable[[RosCall], ServiceRequest | None]) -> RequestSource:
         """Requests of ROS 2's clients of a service, under rmw_zenoh; `read` is as of QueryableSource."""
-        calls: Any = zenoh.handlers.RingChannel(16)
+        calls: Any = zenoh.handlers.RingChannel(MAX_NEW)
         # A client of ROS 2 calls only queryables that are declared complete.
         queryable = self._zenoh.declare_queryable(named.key(self.keys.domain), calls, complete=True)
         self._graph.announce(Kind.SERVICE, named, self.keys.domain)
