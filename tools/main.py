@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from tailor import __version__
 from tailor.schemas.errors import UnreachableError, UsageError
+from tailor.tools.cli.closed_streams import replace_closed_streams
 from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.termination import interrupted_by_sigterm
@@ -88,6 +89,7 @@ def main(argv: Sequence[str] | None = None) -> int:
       SIGTERM; 75 (EX_TEMPFAIL of sysexits.h) if what another process provides is not there and a supervisor, such as
       systemd, may try again.
     """
+    replace_closed_streams()
     arguments = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(["tailor", *arguments[:1]])
     is_supervised = "NOTIFY_SOCKET" in os.environ  # a process takes it out
