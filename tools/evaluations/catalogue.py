@@ -83,6 +83,9 @@ def chosen_of(names: list[str], flags: list[str], everything: bool) -> list[Chos
             chosen.append((name, module, settings))
         elif not everything:
             raise UsageError(f"--domain {settings.domain}: {name} has: {', '.join(has)}")
+    if not chosen:  # that nothing ran would pass for a success
+        of_any = ", ".join(FOR_ANY_DOMAIN)
+        raise UsageError(f"--domain {parsed[0][2].domain}: none of the paper's evaluations has it, expected {of_any}")
     return chosen
 
 

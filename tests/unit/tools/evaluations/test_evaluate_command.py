@@ -146,6 +146,13 @@ def test_of_the_lot_only_those_of_the_domain_run(capsys):
     assert CALLS == ["second"]
 
 
+def test_a_lot_of_which_none_has_the_domain_does_not_pass_for_a_success(capsys):
+    assert main(["evaluate", "all", "--domain", "courier"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "--domain courier: none of the paper's evaluations has it, expected refinement, models, " in line
+    assert CALLS == []
+
+
 def test_an_evaluation_of_another_domain_is_a_usage_error(capsys):
     assert main(["evaluate", "first", "--domain", "arm"]) == 2
     assert "first has: soccer" in capsys.readouterr().err
