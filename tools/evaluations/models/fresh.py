@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tailor.models.episodes.episodes import DataSet, Episode, read_data_set
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed.source import episodes_sha256
+from tailor.schemas.installed.source import episodes_sha256, runs_sha256
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.choosing_models import models_hash
 from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
@@ -70,11 +70,11 @@ def chosen(robot: str, scenarios: Sequence[str], runs: int, seed: int, zoo: str,
       seed: Of starts and noise; `Policy` keeps them apart from those of evaluations.
       zoo: Folder of the models that choose; empty: those that ship.
       jobs: Processes.
-      store: Folder for all data sets; other controllers or models, other data sets.
+      store: Folder for all data sets; other controllers, models or executives, other data sets.
     """
     domain = random_episodes.domain_of(robot)
-    made_by, chosen_by = episodes_sha256(domain)[:12], models_hash(robot, zoo)[:12]
-    folder = store / "policy" / "-".join([made_by, chosen_by, *scenarios, str(runs), str(seed)])
+    made_by = [each(domain)[:12] for each in (episodes_sha256, runs_sha256)]  # another executive chooses others
+    folder = store / "policy" / "-".join([*made_by, models_hash(robot, zoo)[:12], *scenarios, str(runs), str(seed)])
     for _ in run_policy(Policy(domain, tuple(scenarios), runs, seed, zoo, folder), jobs):
         pass
     return folder

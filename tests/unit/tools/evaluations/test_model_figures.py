@@ -14,6 +14,7 @@ from tailor.tools.evaluations.assertion import assertion
 from tailor.tools.evaluations.models import floors, fresh, model_rows, table2
 from tailor.tools.evaluations.models.model_rows import duration_columns
 from tailor.tools.figures.learned_models import reports
+from tailor.tools.learning.gathering import choosing_models, policy_runs
 from tailor.tools.main import main
 
 
@@ -56,6 +57,17 @@ def test_a_model_that_foresees_no_failure_does_not_reach_table_2(missed, false_a
 def test_an_unknown_scenario_is_a_usage_error(capsys):
     assert main(["evaluate", "models", "--domain", "arm", "--on-policy", "chess"]) == 2
     assert "--on-policy chess: no such scenario of arm, expected some of letter-A" in capsys.readouterr().err
+
+
+def test_runs_of_another_executive_are_gathered_anew_and_do_not_end_the_evaluation(tmp_path, monkeypatch):
+    """With a seed of one's own, the folder of before would be of other choices: gathering refuses to mix them."""
+    monkeypatch.setattr(policy_runs, "_run_missing", lambda policy, jobs: iter(()))
+    folders = []
+    for executive in ("a" * 64, "b" * 64, "a" * 64):
+        for module in (fresh, choosing_models):
+            monkeypatch.setattr(module, "runs_sha256", lambda domain, found=executive: found, raising=False)
+        folders.append(fresh.chosen("powercube", ("letter-I",), 2, 5, "", 1, tmp_path))
+    assert folders[0] == folders[2] != folders[1]
 
 
 class Wide:
