@@ -15,6 +15,7 @@ from tailor.tools.learning.gathering.choosing_models import cached_models
 EVERY = tuple(f"tools/evaluations/{name}.py" for name in ("costs", "outcome", "pinned", "task_runs", "tick_budget"))
 HAND_MADE = ("tools/evaluations/detour_*.py",)
 SEARCH = ("tools/evaluations/oracles/search.py",)
+FIGURES = (*EVERY, "tools/evaluations/paired_comparison.py", "tools/evaluations/models/*.py")  # of a set of models
 OVER_BUS = (
     "executive/*.py",
     "runtime/**/*.py",
@@ -36,5 +37,9 @@ def dependencies(task: Task, variant: Variant, others: Sequence[str] = ()) -> li
     models: Any = cached_models(domains.load(task.domain).robot, task.zoo)
     cards = [model.card["sha256"] for model in (*models.durations.values(), *models.successes.values())]
     patterns = (*EVERY, *(HAND_MADE if variant.hand_made else ()), *others)
-    files = sorted(path for pattern in patterns for path in ROOT.glob(pattern))
-    return [*sorted(cards), runs_sha256(task.domain), *map(content_sha256, files)]
+    return [*sorted(cards), runs_sha256(task.domain), *hashes_of(patterns)]
+
+
+def hashes_of(patterns: Sequence[str]) -> list[str]:
+    """Hashes of the files that patterns below ROOT match, in the order of their paths."""
+    return [content_sha256(path) for path in sorted(path for pattern in patterns for path in ROOT.glob(pattern))]

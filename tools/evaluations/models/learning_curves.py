@@ -7,6 +7,7 @@ disagree most (active). Every point is the mean over sets of models, each gather
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -21,6 +22,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.source import runs_sha256
 from tailor.tools.cli.number_checks import add_count, at_least
 from tailor.tools.cli.output_files import whole_output
+from tailor.tools.evaluations.dependencies import FIGURES, hashes_of
 from tailor.tools.evaluations.models import model_rows
 from tailor.tools.evaluations.outcome import FIRST_SEED, Task, Variant
 from tailor.tools.evaluations.pages.plots import draw_curves
@@ -155,8 +157,8 @@ def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[st
     work = settings.store / "learning-curves" / str(recipe.episodes)
     making = Making(robot, recipe, work, settings.jobs, "tailor evaluate learning-curves", CHOOSING)
     title = f"{point.method} {point.episodes}, set {number}: "
-    name = f"figures-{settings.scenario}-{settings.seed}-{settings.starts}-{settings.fresh}.json"
-    path = making.rounds / name  # its folder stands for source and recipe
+    measured = f"{settings.scenario}-{settings.seed}-{settings.starts}-{settings.fresh}-{_measured_by()}"
+    path = making.rounds / f"figures-{measured}.json"  # its folder stands for source and recipe
     if path.exists():
         known: dict[str, float] = json.loads(path.read_text())
         return known
@@ -165,6 +167,11 @@ def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[st
     with whole_output(path) as whole:  # an interrupted write would end every later call
         whole.write_text(json.dumps(figures))
     return figures
+
+
+def _measured_by() -> str:
+    """Hash of the source that measures a set of models: that of learners and executive is in the folder's name."""
+    return hashlib.sha256(" ".join(hashes_of(FIGURES)).encode()).hexdigest()[:12]
 
 
 def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[str, float]:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tailor.tools.evaluations import dependencies
 from tailor.tools.evaluations.models import learning_curves
 from tailor.tools.evaluations.models.learning_curves import FIRST_RECIPE_SEED, METHODS, Point
 from tailor.tools.learning.recipe import Calibration, RandomEpisodes, Recipe, Training, UncertainEpisodes
@@ -52,6 +53,21 @@ def test_a_row_is_the_mean_over_sets_of_models_with_seeds_of_their_own(monkeypat
     assert main(["evaluate", "learning-curves", *flags, "--json"]) == 0
     assert [making.recipe.seed for making in made[4:]] == [FIRST_RECIPE_SEED + 3] * 2  # the other sets are known
     assert [row["n"] for row in json.loads(capsys.readouterr().out)["rows"]] == [9, 9]
+
+
+def test_figures_of_other_measuring_source_are_measured_anew(monkeypatch, capsys, tmp_path) -> None:
+    """A gain that is computed otherwise would else be averaged with those of before."""
+    monkeypatch.setattr(learning_curves, "make", lambda making: [])
+    measured = []
+    monkeypatch.setattr(learning_curves, "_measured", lambda *_: measured.append(1) or {"failed_pct": 0.0})
+    flags = ["--domain", "soccer", "--episodes", "100", "--sets", "2", "--starts", "2", "--methods", "random"]
+    counts = []
+    for changed in ("", "", "paired_comparison.py", "model_rows.py", "costs.py"):
+        monkeypatch.setattr(dependencies, "content_sha256", lambda path: str(path.name == changed))  # noqa: B023
+        assert main(["evaluate", "learning-curves", *flags, "--store", str(tmp_path), "--json"]) == 0
+        counts.append(len(measured))
+    capsys.readouterr()
+    assert counts == [2, 2, 4, 6, 8]
 
 
 def test_a_set_whose_models_hardly_ever_reach_the_goal_has_no_gain_and_ends_no_curve(monkeypatch, capsys, tmp_path):
