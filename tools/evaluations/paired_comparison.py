@@ -155,6 +155,13 @@ def ratio_interval(parts: Array, wholes: Array, seed: int = 0) -> tuple[float, f
     return float(low), float(high)
 
 
+def mean_over_runs(values: Array, runs: Units, seed: int) -> tuple[float, tuple[float, float]]:
+    """Mean of one value an episode, shape (n,), and its 95 % bootstrap interval over runs; see `ratio_interval`."""
+    _, run = np.unique(runs, return_inverse=True)
+    sums, counts = (np.bincount(run, some).astype(np.float64) for some in (values, np.ones(len(values))))
+    return float(values.mean()), ratio_interval(sums, counts, seed)
+
+
 def bootstrap_tails(n: int) -> tuple[float, float]:
     """Quantiles of the resamples of n >= 2 units between which a 95 % interval lies.
 

@@ -11,12 +11,13 @@ import numpy as np
 from tailor.models.episodes.examples import duration_examples
 from tailor.models.export.publishing import leaves
 from tailor.models.features.features import FeatureSpace
-from tailor.models.training import learners, scores
+from tailor.models.training import learners
 from tailor.models.training.training import fit
 from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.models import fresh, weka
 from tailor.tools.evaluations.models.learned import configure_learned, configure_train, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
+from tailor.tools.evaluations.paired_comparison import mean_over_runs
 from tailor.tools.evaluations.progress import tracked
 
 
@@ -63,7 +64,7 @@ def _rows(action: str, space: FeatureSpace, arguments: argparse.Namespace) -> li
 
 
 def _row(action: str, name: str, off: Any, count: int, seconds: float, seed: int) -> dict[str, Any]:
-    mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(seed))
+    mae, ci = mean_over_runs(np.abs(off), range(len(off)), seed)
     return {
         "action": action,
         "learner": name,

@@ -10,11 +10,11 @@ import numpy as np
 
 from tailor.models.episodes.examples import Examples, duration_examples
 from tailor.models.features.planar import projective, relative
-from tailor.models.training import scores
 from tailor.models.training.training import fit
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import PAPER_EPISODES, configure_learned, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
+from tailor.tools.evaluations.paired_comparison import mean_over_runs
 from tailor.tools.evaluations.progress import tracked
 
 ORDER = ("direct", "relative", "projective", "projective-turn")
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, space in tracked(list(spaces.items()), "feature spaces"):
         learner = fit("duration", arguments.learner, train, space, arguments.seed)
         off = np.abs(learner.predict(space(test.arguments)) - test.targets)
-        mae, ci = scores.mean_with_ci(off, np.random.default_rng(arguments.seed))
+        mae, ci = mean_over_runs(off, range(len(off)), arguments.seed)
         rows.append({"space": name, "dimensions": len(space.features), "mae_s": mae, "mae_ci95": ci})
     remarks = [f"{arguments.action}: {PAPER_EPISODES} training episodes, {arguments.episodes} fresh ones; {N_I} ticks"]
     plots = _plots(rows, test, arguments.report) if arguments.report else {}

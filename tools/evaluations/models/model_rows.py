@@ -11,7 +11,6 @@ import numpy as np
 
 from tailor.executive import domains
 from tailor.executive.interfaces.models import Models
-from tailor.executive.interfaces.values import Array
 from tailor.models.episodes.episodes import DataSet
 from tailor.models.episodes.examples import duration_examples, success_examples
 from tailor.models.inference import OnnxDuration, OnnxSuccess
@@ -23,7 +22,7 @@ from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.coverage import coverage_columns, predicted_by
 from tailor.tools.evaluations.models.floors import floor_columns
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report
-from tailor.tools.evaluations.paired_comparison import ratio_interval
+from tailor.tools.evaluations.paired_comparison import mean_over_runs
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.evaluations.seeds import seeds_of
 
@@ -97,7 +96,7 @@ def duration_columns(
     predicted = predicted_by(durations[path], beside, examples.arguments, in_context)
     off = predicted.mean_s - examples.targets
     runs = [episode.number // per_run for episode in finished]
-    mae, ci = _mean_over_runs(np.abs(off), runs, seed)
+    mae, ci = mean_over_runs(np.abs(off), runs, seed)
     mean = float(examples.targets.mean())
     return {
         "training_episodes": durations[path].card["episodes"]["finished"],
@@ -111,13 +110,6 @@ def duration_columns(
         "predicted_s": predicted.mean_s,
         "observed_s": examples.targets,
     }
-
-
-def _mean_over_runs(values: Array, runs: Sequence[int], seed: int) -> tuple[float, tuple[float, float]]:
-    """Mean of one value an episode, shape (n,), and its 95 % interval by a bootstrap over runs."""
-    _, run = np.unique(runs, return_inverse=True)
-    sums, counts = (np.bincount(run, some).astype(np.float64) for some in (values, np.ones(len(values))))
-    return float(values.mean()), ratio_interval(sums, counts, seed)
 
 
 def _failures(model: OnnxSuccess, data: DataSet) -> Row:

@@ -91,3 +91,17 @@ def test_feature_spaces_learn_from_episodes_that_finished(tmp_path, monkeypatch,
     monkeypatch.setattr(fresh, "evaluation", gathered)
     main(["evaluate", "feature-spaces", "--json", "--store", str(tmp_path)])
     assert all(row["mae_s"] < 1.0 for row in json.loads(capsys.readouterr().out)["rows"])
+
+
+@pytest.mark.parametrize(("name", "kind"), [("duration-learners", "learner"), ("feature-spaces", "space")])
+@pytest.mark.parametrize(("count", "known"), [(9, False), (40, True)])
+def test_errors_on_a_few_fresh_episodes_have_no_interval(name, kind, count, known, monkeypatch, capsys) -> None:
+    """The percentile bootstrap of four holds the truth in three of four cases, of two in half of them."""
+    monkeypatch.setattr(learners, "DURATION_LEARNERS", {"linear": learners.DURATION_LEARNERS["linear"]})
+    monkeypatch.setattr(fresh, "training", drawn)
+    few = drawn("", "", 1, 1, 1, None)
+    kept = tuple(episode for episode in few.episodes if episode.finished)[:count]
+    monkeypatch.setattr(fresh, "evaluation", lambda *_: replace(few, episodes=kept))
+    main(["evaluate", name, "--json"])
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert all(row[kind] and np.isfinite(np.array(row["mae_ci95"], float)).all() == known for row in rows)
