@@ -10,17 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from tailor.models.episodes.episodes import Episode, merge, read_data_set
+from tailor.models.episodes.episodes import DataSet, Episode, merge, read_data_set
 from tailor.models.episodes.examples import duration_examples, split
-from tailor.models.episodes.manifest import read_manifest
+from tailor.models.episodes.sources import RUN_NUMBERS
 from tailor.models.features.features import FeatureSpace
 from tailor.models.training import scores
 from tailor.models.training.calibration import MIN_EPISODES
-from tailor.models.training.training import fit
+from tailor.models.training.training import check_count, fit
+from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import add_count
 from tailor.tools.evaluations.models import fresh
 from tailor.tools.evaluations.models.learned import configure_learned, feature_space_of, seeded
 from tailor.tools.evaluations.pages.report import Report, publish_report
+from tailor.tools.evaluations.paired_comparison import mean_over_runs
 from tailor.tools.evaluations.progress import tracked
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions
@@ -44,16 +46,26 @@ def run(arguments: argparse.Namespace) -> int:
     runs = arguments.robot, arguments.scenarios, arguments.episodes
     where = arguments.zoo, arguments.jobs, arguments.store
     spaces = {action: feature_space_of(arguments.robot, action) for action in modelled_actions(domain)}
-    for action in spaces:
-        read_manifest(_random(action, arguments))  # raises before hours of runs, not after
+    random = {action: _random(action, arguments) for action in spaces}  # raises before hours of runs, not after
     first = fresh.run_seed(arguments.seed)  # one round to learn from, and one to judge by
     folders = [fresh.chosen(*runs, seed, *where) for seed in (first, first + 1)]
+    chosen = {action: tuple(read_data_set(folder / action) for folder in folders) for action in spaces}
+    judged = [action for action in spaces if all(any(e.finished for e in each.episodes) for each in chosen[action])]
+    if not judged:
+        raise UsageError(
+            f"{', '.join(arguments.scenarios)}: no action finished in both rounds, expected more --episodes"
+        )
     rows = [
         row
-        for action, space in tracked(list(spaces.items()), "actions")
-        for row in _rows(action, space, folders, arguments)
+        for action in tracked(judged, "actions")
+        for row in _rows(action, spaces[action], (random[action], *chosen[action]), arguments)
     ]
     remarks = [
+        *(
+            f"{action}: never chosen and done in both rounds, so there are no rows"
+            for action in spaces
+            if action not in judged
+        ),
         "coverage: share of errors within the interval that holds 90 % on held-out random episodes",
         "recalibrated: within the one that holds 90 % on held-out on-policy episodes; `tailor train` does the same",
     ]
@@ -62,16 +74,26 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _random(action: str, arguments: argparse.Namespace) -> Path:
-    """Folder of an action's random episodes."""
-    return Path(arguments.data or Path("data") / arguments.robot) / action
+def _random(action: str, arguments: argparse.Namespace) -> DataSet:
+    """An action's random episodes.
+
+    Raises:
+      UsageError: There are none, or too few of them finished to learn from.
+    """
+    folder = Path(arguments.data or Path("data") / arguments.robot) / action
+    data = read_data_set(folder)
+    try:
+        check_count([episode for episode in data.episodes if episode.finished], "finished")
+    except UsageError as error:
+        raise UsageError(f"{folder}: {error}") from None
+    return data
 
 
 def _rows(
-    action: str, space: FeatureSpace, folders: Sequence[Path], arguments: argparse.Namespace
+    action: str, space: FeatureSpace, sets: tuple[DataSet, ...], arguments: argparse.Namespace
 ) -> list[dict[str, Any]]:
-    random = read_data_set(_random(action, arguments))
-    chosen, later = (read_data_set(folder / action) for folder in folders)
+    """Rows of an action, by its random episodes, the choices to learn from, and those to judge by."""
+    random, chosen, later = sets
     kept, apart = split(np.arange(len(random.episodes)), 0.25, np.random.default_rng(arguments.seed))
     known = [random.episodes[k] for k in kept]
     unseen = [random.episodes[k] for k in apart]
@@ -103,19 +125,21 @@ def _judged(
     model = fit("duration", "bag", duration_examples(episodes, arguments.ticks), space, arguments.seed)
     figures: dict[str, Any] = {}
     before = scores.interval_factor(*_errors(model, judges.random, space), LEVEL)
-    for name, some in (("random", judges.random), ("policy", judges.fresh)):
+    for name, some, per_run in (("random", judges.random, 1), ("policy", judges.fresh, RUN_NUMBERS)):
         off, spread = _errors(model, some, space)
-        mae, ci = scores.mean_with_ci(np.abs(off), np.random.default_rng(arguments.seed))
+        runs = [episode.number // per_run for episode in some if episode.finished]
+        mae, ci = mean_over_runs(np.abs(off), runs, arguments.seed)
         figures |= {f"{name}_mae_s": mae, f"{name}_ci95": ci, f"{name}_bias_s": float(off.mean())}
         figures[f"{name}_coverage_pct"] = scores.coverage(off, spread, before)
-    enough = len(judges.held) >= MIN_EPISODES  # as in `tailor train`: fewer say little about a tenth of them
+    count = sum(episode.finished for episode in judges.held)
+    enough = count >= MIN_EPISODES  # as in `tailor train`: fewer say little about a tenth of them
     after = scores.interval_factor(*_errors(model, judges.held, space), LEVEL) if enough else before
     figures["policy_recalibrated_pct"] = scores.coverage(*_errors(model, judges.fresh, space), after)
     return {
         **figures,
         "factor": before,
         "factor_recalibrated": after,
-        "calibrated_on": len(judges.held) if enough else 0,
+        "calibrated_on": count if enough else 0,
     }
 
 
