@@ -47,6 +47,7 @@ def _is_of_all(value: Any) -> bool:
 
 OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that resuming and training compute with
     "episodes": (is_count, "a whole number"),
+    "runs": (is_count, "a whole number"),
     "objects": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),
     "scenarios": (_are_names, "a list of names"),
     "horizon": (lambda value: is_count(value) and value > 0, "a whole number, at least 1"),

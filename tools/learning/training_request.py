@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.episodes.sources import CANDIDATES
 from tailor.schemas.errors import UsageError
+from tailor.tools.learning.gathering.manifests import unfinished
 
 if TYPE_CHECKING:
     from tailor.models.features.features import FeatureSpace
@@ -88,6 +89,14 @@ def check_owner(folder: Path, robot: str) -> None:
         raise UsageError(f"{folder}: episodes of robot '{manifest['robot']}', expected '{robot}'")
     if manifest["action"] != folder.name:
         raise UsageError(f"{folder}: episodes of action '{manifest['action']}', expected '{folder.name}' by its name")
+
+
+def check_whole(folder: Path) -> None:
+    """Raise UsageError if gathering of a data set was interrupted: a card names the command that gathers all of it."""
+    missing = unfinished(folder, read_manifest(folder))
+    if missing:
+        go_on = "the same `tailor gather` with --resume gathers them"
+        raise UsageError(f"{folder}: gathering was interrupted, {missing} are missing, expected all of them: {go_on}")
 
 
 def spaces_by_kind(request: TrainingRequest, arguments: tuple[str, ...], folder: Path) -> dict[str, FeatureSpace]:

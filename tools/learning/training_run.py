@@ -18,6 +18,7 @@ from tailor.tools.learning.training_request import (
     TrainingRequest,
     check_owner,
     check_units,
+    check_whole,
     context_space,
     data_sets,
     reproduction_command,
@@ -57,6 +58,7 @@ def train_models(
     request, sets = checked(request), data_sets(request)
     for folder in itertools.chain(*sets.values()):
         check_owner(folder, request.robot)
+        check_whole(folder)
     _check_own_spaces(request.robot)
     (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
     rows: list[dict[str, Any]] = []

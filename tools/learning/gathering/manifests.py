@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -29,6 +30,8 @@ MIN_STEPS, MAX_STEPS = 2, 400  # unless they had fewer or more of these steps
 NEAR = 0.01  # of a declared range: samples that near to its end stand for the end itself
 # entries of a manifest that may differ when a data set is resumed; `source_sha256` stands for the files
 COUNTS = ("episodes", "runs", "software", "source_files")
+PART = re.compile(r"part-(\d+)-(\d+)\.parquet")  # of random episodes: from the first to before the second
+RUNS = re.compile(r"runs-(\d+)-(\d+)\.done")  # the same of the executive's runs, beside the folders of their actions
 
 
 def manifest_of(spec: DataSetSpec) -> dict[str, Any]:
@@ -118,3 +121,15 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
             f"{folder}: --episodes is {manifest['episodes']}, expected at least {existing['episodes']} "
             "as the folder was made for, to resume"
         )
+
+
+def unfinished(folder: Path, manifest: Mapping[str, Any]) -> str:
+    """How much of a data set was not gathered, as "3 of 9 runs", as far as names of files tell; empty if all was.
+
+    They do not tell it of selected episodes, and of runs whose markers were left behind.
+    """
+    drawn = manifest.get("stream") is not None
+    wanted, name, place = ("episodes", PART, folder) if drawn else ("runs", RUNS, folder.parent)
+    finished = [each for path in place.iterdir() if (each := name.fullmatch(path.name))]
+    count, total = sum(int(each[2]) - int(each[1]) for each in finished), manifest.get(wanted) or 0
+    return f"{total - count} of {total} runs" if finished and count < total else ""

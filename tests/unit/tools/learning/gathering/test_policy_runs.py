@@ -10,6 +10,7 @@ import pytest
 from tailor.models.runtime import ZOO
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering.active_episodes import Active
+from tailor.tools.learning.gathering.manifests import unfinished
 from tailor.tools.learning.gathering.policy_runs import Policy, run_policy
 
 
@@ -53,3 +54,19 @@ def test_a_missing_model_is_noticed_before_any_folder_is_made(tmp_path):
     with pytest.raises(UsageError, match=missing):
         run_policy(Policy("soccer", ("approach",), 1, 7, str(zoo), out), 1)
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("markers", "missing"),
+    [
+        (["runs-000000-000010.done", "runs-000010-000016.done"], ""),
+        (["runs-000010-000016.done"], "10 of 16 runs"),
+        ([], ""),  # pulled from a hub: nothing tells
+    ],
+)
+def test_runs_that_an_interruption_left_are_told_by_their_markers(markers, missing, tmp_path):
+    (tmp_path / "reach").mkdir()
+    for name in markers:
+        (tmp_path / name).touch()
+    (tmp_path / "reach" / "part-000000.parquet").touch()
+    assert unfinished(tmp_path / "reach", {"runs": 16, "on_policy": True}) == missing

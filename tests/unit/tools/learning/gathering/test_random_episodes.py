@@ -48,6 +48,17 @@ def test_a_killed_run_resumes_to_the_same_bits(gathered: Path, tmp_path: Path) -
     assert not list((tmp_path / "goToPose").glob("*.tmp"))
 
 
+def test_nothing_is_learned_from_a_part_of_what_the_card_would_name(gathered: Path, tmp_path: Path, capsys) -> None:
+    """A card's command gathers all episodes, so that it would make another model."""
+    data, zoo = tmp_path / "data" / "goToPose", tmp_path / "zoo"
+    shutil.copytree(gathered, data)
+    (data / f"part-{0:06d}-{PART:06d}.parquet").unlink()
+    assert main(["train", "agilo", "--data", str(data.parent), "--zoo", str(zoo)]) == 2
+    (line,) = [each for each in capsys.readouterr().err.splitlines() if each.startswith("tailor")]
+    assert f"{data}: gathering was interrupted, {PART} of {COUNT} runs are missing, expected all of them: " in line
+    assert not zoo.exists()
+
+
 def test_episodes_of_evaluation_are_never_those_of_training(gathered: Path) -> None:
     spec = DataSetSpec("soccer", "goToPose", 8, 7, gathered)
     evaluation = DataSetSpec("soccer", "goToPose", 8, 7, gathered, stream=EVALUATION_STREAM)
