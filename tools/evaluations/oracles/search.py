@@ -35,14 +35,14 @@ Ranges = Mapping[Key, tuple[float, float]]
 
 
 def search_choices(
-    task: Task, seeds: Sequence[int], horizon: int, runs: int, jobs: int, store: Path | None
+    task: Task, seeds: Sequence[int], settings: RefinementSettings, runs: int, jobs: int, store: Path | None
 ) -> tuple[list[Oracle], list[Oracle]]:
     """Search at every seed, from the choices of the greedy and the refined run.
 
     Args:
       task: Scenario to run.
       seeds: Of the starts.
-      horizon: Of the refined run that the search starts from.
+      settings: Of the refined run that the search starts from.
       runs: Changes simulated from each start.
       jobs: Processes.
       store: Folder of finished starts, which are not searched again; None stores nothing.
@@ -50,7 +50,7 @@ def search_choices(
     Returns:
       What was found from each start after half of the runs, and after all of them.
     """
-    refined = Variant(f"oracle-{runs}", replace(RefinementSettings(), horizon=horizon))
+    refined = Variant(f"oracle-{runs}", settings)
     names = ("half", "all", *(f"again-{k}" for k in range(1, N_AGAIN + 1)))
     known = dependencies(task, refined, SEARCH)
     journals = [Journal(store, task, replace(refined, name=f"{refined.name}-{n}"), known) for n in names]

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.tools.evaluations.oracles.baselines import against_oracle
 from tailor.tools.evaluations.oracles.grid import grid_size, simulate_choices, subgoal_parameters
 from tailor.tools.evaluations.oracles.search import search_choices
@@ -78,12 +77,12 @@ def _oracle(scenario: str, domain: str, seeds: Seeds, found: Found, arguments: a
     if not free:
         return {}
     starts = seeds.starts(min(arguments.oracle, arguments.episodes))
+    settings = replace(settings_from(arguments.refinement), horizon=arguments.horizon[0])
+    jobs, store = arguments.jobs, arguments.store
     if grid_size(task, free, arguments.points) > MAX_GRID:
-        horizon, store = arguments.horizon[0], arguments.store
-        half, judged = search_choices(task, starts, horizon, arguments.oracle_runs, arguments.jobs, store)
+        half, judged = search_choices(task, starts, settings, arguments.oracle_runs, jobs, store)
         before = against_oracle(half, greedy, refined)
         return against_oracle(judged, greedy, refined) | {"oracle_half_pct": before["oracle_pct"]}
-    judged = simulate_choices(
-        task, free, starts, RefinementSettings(), arguments.points, arguments.jobs, arguments.store
+    return against_oracle(
+        simulate_choices(task, free, starts, settings, arguments.points, jobs, store), greedy, refined
     )
-    return against_oracle(judged, greedy, refined)

@@ -14,6 +14,8 @@ from tailor.tools.evaluations.oracles import search as oracle_search
 from tailor.tools.evaluations.oracles.grid import N_AGAIN
 from tailor.tools.evaluations.oracles.search import Search, last_choice
 from tailor.tools.evaluations.outcome import Outcome, Variant
+from tailor.tools.evaluations.refinement import refinement_rows
+from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.lockstep.run import Run
 
 RANGES = {("a", "x"): (0.0, 1.0), ("a", "y"): (-2.0, 2.0), ("b", "x"): (5.0, 6.0)}
@@ -90,3 +92,21 @@ def _parameter(label, bound, value):
 def test_a_goal_that_holds_at_the_start_is_judged_by_the_grid_too():
     one = grid._judged(1, [replace(DONE, duration_s=0.0)], DONE)
     assert (one.ceiling_s, one.greedy_s, one.zero_s) == (0.0, 0.0, 10.0)
+
+
+@pytest.mark.parametrize("few", [True, False])
+def test_the_oracle_has_the_settings_of_the_runs_that_it_is_compared_with(few, monkeypatch):
+    """A ceiling of runs that may not risk what refined runs may, say, would be none."""
+    seen = []
+    done = replace(DONE, free=(("ball", "phi", -3.0, 3.0, 0.0),))
+    found = {name: {seed: replace(done, seed=seed) for seed in (5, 6)} for name in ("h1", "h3")}
+    monkeypatch.setattr(refinement_rows, "MAX_GRID", 1000 if few else 1)
+    monkeypatch.setattr(refinement_rows, "simulate_choices", lambda *words: seen.append(words[3]) or [])
+    monkeypatch.setattr(refinement_rows, "search_choices", lambda *words: seen.append(words[2]) or ([], []))
+    flags = SimpleNamespace(
+        refinement=["risk_cost_s=20", "p_fail_max=0.15"], horizon=[3], oracle=2, oracle_runs=4, points=6,
+        episodes=2, profile="", zoo="", tick_ms=0.0, jobs=1, store=None,
+    )  # fmt: skip
+    refinement_rows._oracle("approach", "soccer", Seeds(5, {}), found, flags)
+    (settings,) = seen
+    assert (settings.horizon, settings.risk_cost_s, settings.p_fail_max) == (3, 20.0, 0.15)
