@@ -136,9 +136,12 @@ def _named(folders: Sequence[Path]) -> Iterator[None]:
 
 
 def _check_columns(spaces: Iterable[FeatureSpace], sets: Sequence[DataSet], data: DataSet) -> None:
-    """Raise UsageError if a column has another unit than features take, or a feature of it is not finite."""
+    """Raise UsageError if a column has or seems to have another unit than features take, or one is not finite."""
+    from tailor.models.episodes.plausible import implausible
     from tailor.models.export.space_check import fault_in_data
 
+    if fault := next(filter(None, map(implausible, sets)), ""):
+        raise UsageError(fault)
     for space in {space.name: space for space in spaces}.values():
         for each in sets:
             check_units(space, each.manifest["arguments"])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tailor.models.cards.card import read_card
-from tailor.models.episodes.episodes import UNOBSERVED, DataSet, Episode, write_part
+from tailor.models.episodes.episodes import UNOBSERVED, DataSet, Episode, read_data_set, write_part
 from tailor.models.episodes.manifest import read_manifest, write_manifest
 from tailor.models.features.features import FeatureSpace, quantities
 from tailor.models.training import success_training
@@ -95,6 +95,28 @@ def test_columns_in_another_unit_than_features_take_are_refused(tmp_path) -> Non
     with pytest.raises(UsageError, match=expected):
         list(train_action([folder], TrainingRequest("agilo", tmp_path / "zoo")))
     assert not (tmp_path / "zoo").exists()
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "message"),
+    [
+        (2, 180 / np.pi, r"phi is far outside of -4 to 4 in 1\d\d of 150 episodes, expected numbers in the unit and"),
+        (0, 1000.0, "x is far outside of -4 to 4 in 1"),
+        (None, 1 / 60, "duration_s is less than half of the ticks last in 150 of 150 episodes, expected seconds"),
+    ],
+)
+def test_columns_that_seem_to_be_in_another_unit_are_refused(column, factor, message, tmp_path) -> None:
+    """The manifest states radians, and a converter wrote degrees: the model's own test would not show it."""
+    folder, rng = written(tmp_path / "goToPose", 1), np.random.default_rng(1)
+    data = read_data_set(folder)
+    scale = np.where(np.arange(8) == column, factor, 1.0)
+    changed = [
+        replace(each, arguments=row, ticks=np.tile(row, (40, 1)), duration_s=4.0 * (factor if column is None else 1.0))
+        for each, row in zip(data.episodes, rng.uniform(-3, 3, (150, 8)) * scale, strict=True)
+    ]
+    write_part(folder / "part-000000.parquet", changed, NAMES[:8])
+    with pytest.raises(UsageError, match=f"goToPose: {message}"):
+        list(train_action([folder], TrainingRequest("agilo", tmp_path / "zoo")))
 
 
 def test_no_duration_is_learned_from_episodes_that_calibrate_and_cards_count_them(tmp_path) -> None:
