@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,12 +33,12 @@ def predicted_by(
 
 
 def coverage_columns(predicted: Predicted, observed_s: Array) -> dict[str, Any]:
-    """Percent of the observed durations, shape (n,), within their intervals."""
+    """Percent of the observed durations, shape (n,), within their intervals; NaN of a third without any."""
     lower, upper = predicted.lower_s, predicted.upper_s
     held = (lower <= observed_s) & (observed_s <= upper)
     thirds = np.array_split(np.argsort(predicted.std_s, kind="stable"), 3)
     return {
         "coverage_pct": 100 * float(held.mean()),
-        "coverage_thirds_pct": tuple(100 * float(held[third].mean()) for third in thirds),
+        "coverage_thirds_pct": tuple(100 * float(held[third].mean()) if len(third) else math.nan for third in thirds),
         "interval_s": float(np.mean(upper - lower)),
     }
