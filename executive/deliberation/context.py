@@ -16,6 +16,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.topics import nominal_rates_hz
 
 PERIOD_NS = 100_000_000  # 10 Hz
+MAX_COAST_TICKS = 5  # while no action runs nobody looks where the robot goes
 MAX_GOAL_BYTES = 8000  # each status contains the goal and must not exceed the max_bytes of its topic
 
 
@@ -63,6 +64,8 @@ class Settings:
         for name in ("replan_failures", "overruns_to_hold"):
             if getattr(self, name) < 1:
                 raise UsageError(f"executive.{name} is {getattr(self, name)}, expected at least 1")
+        if self.coast_ticks > MAX_COAST_TICKS:
+            raise UsageError(f"executive.coast_ticks is {self.coast_ticks}, expected at most {MAX_COAST_TICKS}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,7 @@ def test_nested_tables_become_nested_settings():
         ({"executive": {"seed": -1}}, "f.toml: executive.seed is -1, expected at least 0"),
         ({"executive": {"adopt_gain_s": float("nan")}}, "f.toml: executive.adopt_gain_s is nan, expected at least 0"),
         ({"executive": {"overruns_to_hold": 0}}, "f.toml: executive.overruns_to_hold is 0, expected at least 1"),
+        ({"executive": {"coast_ticks": 6}}, "f.toml: executive.coast_ticks is 6, expected at most 5"),
         (
             {"executive": {"refinement": {"batch": 10**9}}},
             "f.toml: refinement.batch is 1000000000, expected at most 1000000",
