@@ -31,11 +31,11 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
     columns = max((len(free.touched) + 1 for _, _, free in rows), default=1)
     figure = Figure(figsize=(SIZE_IN * columns, SIZE_IN * max(1, len(rows)) + 0.4), layout="constrained")
     for row, (title, explanation, free) in enumerate(rows):
-        for column, (name, seconds, colour) in enumerate(_curves(explanation, free)):
+        for column, (name, seconds, chosen_s, colour) in enumerate(_curves(explanation, free)):
             place = row * columns + column + 1
             shape = {"projection": "polar"} if free.variable.periodic else {}
             axis = figure.add_subplot(len(rows), columns, place, **shape)
-            _draw(axis, free, seconds, colour)
+            _draw(axis, free, seconds, chosen_s, colour)
             head = f"{title}\n{free.variable.quantity} at {free.variable.label}\n" if column == 0 else "\n\n"
             axis.set_title(f"{head}{name}", fontsize="small", parse_math=False)
     figure.supxlabel(LEGEND, fontsize="small")
@@ -43,13 +43,14 @@ def draw_alternatives(explanations: Sequence[tuple[str, Explanation]], path: Pat
     figure.savefig(path, dpi=120)
 
 
-def _curves(explanation: Explanation, free: FreeParameter) -> list[tuple[str, Any, str]]:
-    seconds = free.alternatives.durations_s
-    actions = [(explanation.actions[i], seconds[i], COLOURS[i % len(COLOURS)]) for i in free.touched]
-    return [*actions, ("sum", seconds.sum(axis=0), SUM)]
+def _curves(explanation: Explanation, free: FreeParameter) -> list[tuple[str, Any, float, str]]:
+    """Name, predictions over the range, that of the chosen values, and colour of each plot in a row."""
+    seconds, chosen_s = free.alternatives.durations_s, explanation.chosen_s
+    actions = [(explanation.actions[i], seconds[i], chosen_s[i], COLOURS[i % len(COLOURS)]) for i in free.touched]
+    return [*actions, ("sum", seconds.sum(axis=0), sum(chosen_s), SUM)]
 
 
-def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
+def _draw(axis: Any, free: FreeParameter, seconds: Any, chosen_s: float, colour: str) -> None:
     """One curve, pale where it is INVALID, with the chosen value (full line) and greedy's (dashed)."""
     values = free.alternatives.values
     valid = np.where(np.isfinite(free.alternatives.total_s), seconds, np.nan)
@@ -59,11 +60,10 @@ def _draw(axis: Any, free: FreeParameter, seconds: Any, colour: str) -> None:
         axis.set_ylim(0, 1.08 * np.nanmax(seconds))
     for value, style in ((free.greedy, "--"), (free.chosen, "-")):
         axis.axvline(value, color="black" if style == "-" else "grey", linestyle=style, linewidth=1.1)
-    predicted = np.interp(free.chosen, values, seconds)
-    axis.plot([free.chosen], [predicted], "o", color="black", markersize=4)
+    axis.plot([free.chosen], [chosen_s], "o", color="black", markersize=4)
     unit = "" if free.variable.unit in UNITLESS else f" [{free.variable.unit}]"
     swept = "" if free.variable.periodic else f"{free.variable.quantity}{unit}, "
-    axis.set_xlabel(f"{swept}chosen: {predicted:.1f} s", fontsize="small")
+    axis.set_xlabel(f"{swept}chosen: {chosen_s:.1f} s", fontsize="small")
     if free.variable.periodic:
         count_both_ways(axis)
     else:
