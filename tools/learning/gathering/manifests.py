@@ -30,8 +30,8 @@ MIN_STEPS, MAX_STEPS = 2, 400  # unless they had fewer or more of these steps
 NEAR = 0.01  # of a declared range: samples that near to its end stand for the end itself
 # entries of a manifest that may differ when a data set is resumed; `source_sha256` stands for the files
 COUNTS = ("episodes", "runs", "software", "source_files")
-PART = re.compile(r"part-(\d+)-(\d+)\.parquet")  # of random episodes: from the first to before the second
-RUNS = re.compile(r"runs-(\d+)-(\d+)\.done")  # the same of the executive's runs, beside the folders of their actions
+_PART = re.compile(r"part-(\d+)-(\d+)\.parquet")  # of random episodes: from the first to before the second
+_RUNS = re.compile(r"runs-(\d+)-(\d+)\.done")  # the same of the executive's runs, beside the folders of their actions
 
 
 def manifest_of(spec: DataSetSpec) -> dict[str, Any]:
@@ -123,13 +123,23 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
         )
 
 
+def part_name(first: int, end: int) -> str:
+    """Name of a part of random episodes: part-000020-000040.parquet holds 20 to 39."""
+    return f"part-{first:06d}-{end:06d}.parquet"
+
+
+def marker_name(first: int, end: int) -> str:
+    """Name of the marker of finished runs; it holds their number, because a shorter last chunk may grow."""
+    return f"runs-{first:06d}-{end:06d}.done"
+
+
 def unfinished(folder: Path, manifest: Mapping[str, Any]) -> str:
     """How much of a data set was not gathered, as "3 of 9 runs", as far as names of files tell; empty if all was.
 
     They do not tell it of selected episodes, and of runs whose markers were left behind.
     """
     drawn = manifest.get("stream") is not None
-    wanted, name, place = ("episodes", PART, folder) if drawn else ("runs", RUNS, folder.parent)
+    wanted, name, place = ("episodes", _PART, folder) if drawn else ("runs", _RUNS, folder.parent)
     finished = [each for path in place.iterdir() if (each := name.fullmatch(path.name))]
     count, total = sum(int(each[2]) - int(each[1]) for each in finished), manifest.get(wanted) or 0
     return f"{total - count} of {total} runs" if finished and count < total else ""

@@ -17,6 +17,7 @@ from tailor.models.episodes.episodes import Episode
 from tailor.models.episodes.sources import CALIBRATES, RUN_NUMBERS
 from tailor.simnodes.world import World
 from tailor.tools.learning.gathering.choosing_models import UNPROVEN, cached_models, prepare_chosen
+from tailor.tools.learning.gathering.manifests import marker_name
 from tailor.tools.learning.gathering.run_data_sets import write
 from tailor.tools.learning.gathering.situations import situations
 from tailor.tools.lockstep.bodies import body_of
@@ -90,8 +91,8 @@ def _run_missing(policy: Policy, jobs: int) -> Iterator[int]:
 
 
 def _marker(policy: Policy, first: int) -> Path:
-    """Marker of finished runs; the name holds their number, because a shorter last chunk may grow."""
-    return policy.folder / f"runs-{first:06d}-{min(first + CHUNK, len(policy.jobs)):06d}.done"
+    """Marker of the finished runs that start with number `first`."""
+    return policy.folder / marker_name(first, min(first + CHUNK, len(policy.jobs)))
 
 
 def _chunk(policy: Policy, first: int) -> list[tuple[str, Episode]]:

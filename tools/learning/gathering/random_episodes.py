@@ -20,7 +20,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
 from tailor.tools.learning.gathering.beside_objects import check_sampler, runs_beside_objects
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec, columns_of, draw
-from tailor.tools.learning.gathering.manifests import check_resumable, manifest_of
+from tailor.tools.learning.gathering.manifests import check_resumable, manifest_of, part_name
 from tailor.tools.lockstep import action_run
 from tailor.tools.lockstep.bodies import body_of
 from tailor.tools.parallel.pool import completed
@@ -97,8 +97,8 @@ def part_of(spec: DataSetSpec, first: int) -> tuple[bytes, float, float]:
 
 
 def part_path(spec: DataSetSpec, first: int) -> Path:
-    """Path of the part that starts with episode `first`: part-000020-000040.parquet holds 20 to 39."""
-    return spec.folder / f"part-{first:06d}-{min(first + PART, spec.episodes):06d}.parquet"
+    """Path of the part that starts with episode `first`."""
+    return spec.folder / part_name(first, min(first + PART, spec.episodes))
 
 
 def missing_parts(spec: DataSetSpec) -> list[int]:
