@@ -12,15 +12,14 @@ from tailor.executive.composition import ModelLoader, rebuild_context
 from tailor.executive.deliberation.context import Context
 from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import Rejected, UsageError
-from tailor.schemas.messages import Contexts, RefinementReport, Subgoals
+from tailor.schemas.messages import Contexts, Subgoals
 from tailor.schemas.parsed_files import table_of
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.viewer.event_fields import Fields, number
 from tailor.tools.viewer.explanations.avoided_failure import AvoidedFailure
-from tailor.tools.viewer.explanations.decided_sequence import Decided, decided
+from tailor.tools.viewer.explanations.decided_sequence import decided
 from tailor.tools.viewer.explanations.explanation import Explanation, FreeParameter, explain
 from tailor.tools.viewer.explanations.longer_search import best_cost
-from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
 
 STREAM = 5  # of the seed, and the next one; the executive draws from others
 
@@ -40,7 +39,6 @@ class Explainer:
         self._load: ModelLoader = load_models
         self._context: Context | None = None
         self._objects: Contexts | None = None  # the newest
-        self._decided: Decided | None = None  # what was explained last
         self.missing = "no provenance yet"
 
     def load(self, provenance: str) -> None:
@@ -70,24 +68,18 @@ class Explainer:
 
     def explanation(self, message: Subgoals) -> Explanation | None:
         """Explanation of subgoals; None without models, if no parameter was free, or if the message is damaged."""
-        context, self._decided = self._context, None
+        context = self._context
         if context is None or message.tick < 0:
             return None
         with blamed_on_run(context.domain.name):
             settings = context.settings.refinement
-            self._decided = decided(message, context.domain.actions, context.models, settings, self._objects)
-            return None if self._decided is None else explain(self._decided, _rng(context, STREAM, message))
+            found = decided(message, context.domain.actions, context.models, settings, self._objects)
+            return None if found is None else explain(found, _rng(context, STREAM, message))
 
-    def best_cost(self, message: Subgoals) -> float:
-        """Least objective that a long search finds for the decision that was explained last."""
-        assert self._context is not None
-        assert self._decided is not None, "explanation() returned None"
-        return best_cost(self._decided, _rng(self._context, STREAM + 1, message))
-
-    def why_not_certified(self, report: RefinementReport | None) -> str:
-        """Why the choice that was explained last has no certificate, if it has none."""
-        assert self._decided is not None, "explanation() returned None"
-        return why_not_certified(self._decided, report)
+    def best_cost(self, message: Subgoals, explanation: Explanation) -> float:
+        """Least objective that a long search finds for the decision of a message, whose explanation is given."""
+        assert self._context is not None, "there is an explanation"
+        return best_cost(explanation.decided, _rng(self._context, STREAM + 1, message))
 
     def fields(self, message: Subgoals) -> Fields | None:
         """The explanation as the page reads it; None also if the models do not suit the settings of the run."""

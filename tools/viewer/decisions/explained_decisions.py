@@ -16,6 +16,7 @@ from tailor.tools.viewer.decisions.decision_reader import Decision, DecisionRead
 from tailor.tools.viewer.decisions.explanation_text import certified_gap_pct
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.explanations.explanation import Explanation
+from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
 from tailor.tools.viewer.timed_messages import timed
 
 MAX_NAMED = 3  # actions of a sequence in a title; a word that the arm writes has dozens
@@ -90,8 +91,8 @@ def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
     explanation = explainer.explanation(decision.subgoals)
     if explanation is None:
         return ExplainedDecision(decision, None)
-    best_cost, reason = explainer.best_cost(decision.subgoals), ""
+    best_cost, reason = explainer.best_cost(decision.subgoals, explanation), ""
     report = decision.search.report
     if certified_gap_pct(report, explanation.chosen_cost) is None:
-        reason = explainer.why_not_certified(report)
+        reason = why_not_certified(explanation.decided, report)
     return ExplainedDecision(decision, explanation, best_cost, reason)

@@ -41,6 +41,7 @@ class FreeParameter:
 class Explanation:
     """A choice against its alternatives. Durations are predicted means; `cost` is the objective, +inf is INVALID."""
 
+    decided: Decided
     actions: tuple[str, ...]  # within the horizon, in order
     chosen_s: tuple[float, ...]
     greedy_s: tuple[float, ...]
@@ -66,6 +67,7 @@ def explain(decided: Decided, rng: np.random.Generator) -> Explanation | None:
     chosen_j, greedy_j = np.transpose([prediction.energy_j for prediction in predictions]).tolist()
     chosen_cost, greedy_cost = objective.total(predictions).tolist()
     return Explanation(
+        decided,
         tuple(a.action.name for a in sequence.within(settings.horizon)),
         tuple(chosen_s),
         tuple(greedy_s),
