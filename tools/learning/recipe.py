@@ -78,15 +78,19 @@ class UncertainEpisodes:
 
 @dataclass(frozen=True, slots=True)
 class OwnLearner:
-    """Learner of the durations and energies of an action that needs another one than most."""
+    """Learner of the durations and energies of an action that needs another one than most, or another feature space.
+
+    What is empty is as for all actions.
+    """
 
     action: str
-    learner: str
+    learner: str = ""
+    features: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Training:
-    """Options of `tailor train`, kinds of models, and learners of single actions; empty: its defaults, all kinds."""
+    """Options of `tailor train`, kinds of models, what single actions need; empty: its defaults, all kinds."""
 
     kinds: tuple[Literal["duration", "success", "clearance", "energy", "duration_beside"], ...] = ()
     features: str = ""

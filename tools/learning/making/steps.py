@@ -6,7 +6,6 @@ Equal source, libraries, recipe and platform give equal models, bit for bit. Eve
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from tailor.tools.learning.gathering import data_set_spec, run_data_sets
 from tailor.tools.learning.making.episodes import gather_calibration, gather_random, gather_round, gather_uncertain
 from tailor.tools.learning.making.installing import check_complete
 from tailor.tools.learning.making.making import CHOOSING, Making
-from tailor.tools.learning.making.training import train_all, training_request
+from tailor.tools.learning.making.training import of_action, train_all, training_request
 from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.training_request import spaces_by_kind
 from tailor.tools.learning.training_run import checked
@@ -30,10 +29,9 @@ def check(making: Making) -> None:
     """
     check_recipe(making.robot, making.recipe)
     request, domain = checked(training_request(making, making.zoo)), domains.load(making.domain)
-    for each in making.recipe.training.learners:
-        checked(dataclasses.replace(request, learner=each.learner))
     for action in run_data_sets.modelled_actions(making.domain):
-        spaces_by_kind(request, tuple(data_set_spec.argument_names(domain, action)), Path(action))
+        own = checked(of_action(making, request, action))
+        spaces_by_kind(own, tuple(data_set_spec.argument_names(domain, action)), Path(action))
 
 
 def make(making: Making) -> Iterator[Step]:

@@ -11,6 +11,7 @@ from tailor.models.cards.card import KINDS
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.making.making import Making
+from tailor.tools.learning.recipe import OwnLearner
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
     DEFAULT_FAILURE_LEARNER,
@@ -41,15 +42,22 @@ def train_all(making: Making, zoo: Path, data: list[Path], kinds: tuple[str, ...
 
 def _train(making: Making, request: TrainingRequest) -> Iterator[tuple[int, int]]:
     """Train each model in a process of its own, equal bits for any number of jobs; yields how many of them are done."""
-    own = {each.action: each.learner for each in making.recipe.training.learners}
     each = [
-        dataclasses.replace(request, actions=(action,), kinds=(kind,), learner=own.get(action, request.learner))
+        dataclasses.replace(of_action(making, request, action), actions=(action,), kinds=(kind,))
         for kind in request.kinds or KINDS
         for action in data_sets(request)
     ]
     yield 0, len(each)
     for done, _ in enumerate(Processes().completed(train_models, [(one,) for one in each], making.jobs), 1):
         yield done, len(each)
+
+
+def of_action(making: Making, request: TrainingRequest, action: str) -> TrainingRequest:
+    """The request with the learner and the feature space that the recipe names for an action."""
+    own = next((each for each in making.recipe.training.learners if each.action == action), OwnLearner(action))
+    return dataclasses.replace(
+        request, learner=own.learner or request.learner, features=own.features or request.features
+    )
 
 
 def training_request(

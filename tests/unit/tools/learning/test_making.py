@@ -120,12 +120,16 @@ def test_each_model_is_trained_by_a_request_of_its_own(tmp_path: Path, monkeypat
     requests: list[TrainingRequest] = []
     monkeypatch.setattr(training, "train_models", requests.append)
     whole = TrainingRequest("agilo", tmp_path, data=(tmp_path,), kinds=("duration", "success"))
-    own = Training(learners=(OwnLearner("reach", "bag"),))
+    own = Training(learners=(OwnLearner("reach", "bag"), OwnLearner("goToPose", features="projective")))
     progress = list(training._train(Making("agilo", replace(TINY, training=own), tmp_path, 1, "make"), whole))
     assert progress == [(done, 4) for done in range(5)], "a long training is no silence"
-    each = [(request.actions, request.kinds, request.learner) for request in requests]
-    assert each == [((a,), (k,), n) for k in whole.kinds for a, n in (("goToPose", whole.learner), ("reach", "bag"))]
-    usual = {replace(request, actions=(), kinds=whole.kinds, learner=whole.learner) for request in requests}
+    each = [(request.actions, request.kinds, request.learner, request.features) for request in requests]
+    named = ("goToPose", whole.learner, "projective"), ("reach", "bag", whole.features)
+    assert each == [((action,), (kind,), learner, space) for kind in whole.kinds for action, learner, space in named]
+    usual = {
+        replace(request, actions=(), kinds=whole.kinds, learner=whole.learner, features=whole.features)
+        for request in requests
+    }
     assert usual == {whole}
 
 
