@@ -14,7 +14,7 @@ import numpy as np
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.dubins import Pose2
 from tailor.executive.actions.go_to_pose import GoToPose
-from tailor.executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, PlanarBelief, X, Y
 from tailor.executive.interfaces.action import Action, Control, Controller
 from tailor.executive.interfaces.action_context import ActionContext
 from tailor.executive.interfaces.values import Array
@@ -58,12 +58,12 @@ class DetourController:
         if not isinstance(state, Detour) or _moved(state.discs, discs):
             state = self._planned(state, belief, arguments, discs)
         if state.poses:
-            control = self.go(state.leg, now_ns, belief, _to(arguments, state.poses[0]))
+            control = self.go(state.leg, now_ns, belief, _to(arguments, state.poses[0], belief))
             if control.outcome == "running":
                 return _turning_first(replace(control, state=replace(state, leg=control.state)), belief)
             state = Detour(state.poses[1:], state.discs)
             return replace(control, state=state, outcome="running")
-        control = self.action(state.leg, now_ns, belief, arguments)
+        control = self.action(state.leg, now_ns, belief, _from(arguments, belief))
         return _turning_first(replace(control, state=replace(state, leg=control.state)), belief)
 
     def _planned(self, state: Any, belief: PlanarBelief, arguments: Array, discs: tuple[Disc, ...]) -> Detour:
@@ -122,8 +122,15 @@ def _stays_clear(graph: DetourGraph, here: Pose2, poses: Sequence[Pose2], goal: 
     return all(graph.clear(a, b, v) for a, b, v in zip(stops, stops[1:], speeds, strict=False))
 
 
-def _to(arguments: Array, pose: Pose2) -> Array:
-    to = np.array(arguments)
+def _from(arguments: Array, belief: PlanarBelief) -> Array:
+    """Arguments of a leg that begins here: controllers may look at the start, too."""
+    begun = np.array(arguments)
+    begun[[X, Y, PHI]] = belief.pose.x, belief.pose.y, belief.pose.phi
+    return begun
+
+
+def _to(arguments: Array, pose: Pose2, belief: PlanarBelief) -> Array:
+    to = _from(arguments, belief)
     to[[XG, YG, PHIG, VG]] = (*pose, PASSING_MPS)
     return to
 

@@ -9,12 +9,14 @@ import pytest
 
 from tailor.executive import domains
 from tailor.executive.actions.arrival_path import ArrivalPath
+from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
+from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.action_context import ActionContext
 from tailor.schemas.messages.soccer import OpponentsTruth
 from tailor.tools.evaluations.assertion import assertion
 from tailor.tools.evaluations.costs import Costs
-from tailor.tools.evaluations.detour_controller import discs_of, with_detours
+from tailor.tools.evaluations.detour_controller import DetourController, discs_of, with_detours
 from tailor.tools.evaluations.detour_graph import DetourGraph
 from tailor.tools.evaluations.outcome import Outcome, Task
 from tailor.tools.evaluations.task_runs import run_one
@@ -76,6 +78,25 @@ def test_controllers_with_detours_touch_no_opponent_in_the_way(detours):
     if detours:
         assert control.outcome == "done"
         assert math.dist((body.ground_truth().x, body.ground_truth().y), GOAL[:2]) < 0.2
+
+
+@pytest.mark.parametrize("opponents", [(), ((0.5, 0.0, 0.2),)])
+def test_a_leg_begins_where_the_robot_is(opponents):
+    """Controllers may decide by the start in their arguments; that of the action is long passed."""
+    given = []
+
+    def go(state, now_ns, belief, arguments):
+        given.append(arguments[:3].tolist())
+        return Control(state, (0.0, 0.0))
+
+    domain = domains.load("soccer")
+    context = ActionContext(
+        domain.actions["goToPose"].context.columns, lambda _: np.array(opponents).reshape(-1, 3), "", ""
+    )
+    detour = DetourController(go, go, WAYS, context, FIELD)
+    belief = replace(domain.initial_belief(), pose=Pose(-0.7, 0.1, 0.2, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4)))
+    detour(None, 0, belief, np.array([*START, 0.0, *GOAL, 0.0]))
+    assert given == [[-0.7, 0.1, 0.2]]
 
 
 @pytest.mark.parametrize(("variant", "touched"), [(0, True), (1, False), (2, False)])
