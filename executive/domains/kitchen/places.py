@@ -16,6 +16,7 @@ from tailor.schemas.kitchen.furniture import Place, kitchen, on_table
 
 TABLE_M = (0.4, 0.8)  # from the robot's middle to the table, when it grips or puts (paper 6.3)
 TILT_M = 0.03  # a table that is turned a little is nearer at one end of a stand's range: kept off both ends
+REACH_M = 0.88  # from the robot's middle to the spot's line: drives end up to 4 cm beside a stand, looking aside
 LATERAL_M = 0.12  # how far beside the spot the robot may stand
 FACING_RAD = 0.5  # how far it may look aside of the table
 SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
@@ -89,6 +90,7 @@ def stand_ranges(spot: Spot) -> Ranges:
     """Ranges of x, y and phi where the robot may stand for a spot; the map's axes are along the table's, or nearly."""
     phi = spot.table[2]
     nearest, farthest = (spot.from_edge_m + d for d in (TABLE_M[0] + TILT_M, TABLE_M[1] - TILT_M))
+    farthest = max(nearest, min(farthest, REACH_M))
     along, across, sign = (
         ("x", "y", math.cos(phi)) if abs(math.cos(phi)) > abs(math.sin(phi)) else ("y", "x", math.sin(phi))
     )
