@@ -14,6 +14,8 @@ from tailor.models.features.lifted_intervals import joints_lifted
 from tailor.models.features.obstacle_intervals import one_obstacle
 from tailor.models.features.sight_intervals import Case, Spans, may_lie_in_half, sight, wrapped
 from tailor.models.features.spot_intervals import spot, spot_handle, spot_out
+from tailor.models.features.straight_drive import SEEN
+from tailor.models.features.straight_intervals import straight_or_bent
 
 FeatureSpans = Callable[[Spans], tuple[Case, ...]]
 
@@ -56,6 +58,16 @@ def _projective_periodic(columns: Spans) -> tuple[Case, ...]:
     return tuple(cases)
 
 
+def _straight_drive(columns: Spans) -> tuple[Case, ...]:
+    cases = []
+    for case in _projective(columns[:SEEN]):
+        assert case.possible is not None
+        dist, to, at = case.features[2:]
+        for straight, where in straight_or_bent(dist, to, at, columns[SEEN]):
+            cases.append(Case((*case.features, straight), case.possible & where))
+    return tuple(cases)
+
+
 def _joints(columns: Spans) -> tuple[Case, ...]:
     a, wa, b, wb, ag, wag, bg, wbg = columns
     da, db = ag - a, bg - b
@@ -91,6 +103,7 @@ FEATURE_SPANS: Mapping[str, FeatureSpans] = {
     "projective": _projective,
     "projective-turn": _projective_turn,
     "projective-periodic": _projective_periodic,
+    "straight-drive": _straight_drive,
     "one-obstacle": one_obstacle,
     "spot": spot,
     "spot-out": spot_out,

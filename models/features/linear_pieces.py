@@ -14,6 +14,8 @@ import numpy as np
 
 from tailor.models.features.intervals import ANGLE_ERROR, ARGUMENT_ERROR, TURN, Array, Span, length
 from tailor.models.features.sight_intervals import Bools, Spans, sight
+from tailor.models.features.straight_drive import SEEN
+from tailor.models.features.straight_intervals import straight_or_bent
 
 KINKS = (-np.pi / 2, 0.0, np.pi / 2)  # of the angle at the goal in "projective-periodic"
 ZERO = Span(np.zeros((1, 1, 1)), np.zeros((1, 1, 1)))
@@ -63,6 +65,15 @@ def _projective_periodic(columns: Spans) -> Iterator[Piece]:
         yield Piece(piece.terms, piece.possible, _periodic)
 
 
+def _straight_drive(columns: Spans) -> Iterator[Piece]:
+    for piece in _projective(columns[:SEEN]):
+        dist, to, at = (term.span for term in piece.terms[2:])
+        for straight, where in straight_or_bent(dist, to, at, columns[SEEN]):
+            possible = piece.possible & where
+            if possible.any():
+                yield Piece((*piece.terms, Term(straight)), possible)
+
+
 def _periodic(at: Array) -> tuple[Array, ...]:
     """The angle's magnitude, and the triangle wave that follows its sine."""
     half = at.dtype.type(np.pi / 2)
@@ -93,4 +104,5 @@ def _signed(angle: Span, end: Array, sign: Array) -> Span:
 LINEAR_PIECES: Mapping[str, Callable[[Spans], Iterator[Piece]]] = {
     "projective": _projective,
     "projective-periodic": _projective_periodic,
+    "straight-drive": _straight_drive,
 }

@@ -31,6 +31,7 @@ spaces = st.sampled_from(
         "projective",
         "projective-turn",
         "projective-periodic",
+        "straight-drive",
         "joints",
         "joints-lifted",
         "joints-relative",
@@ -58,7 +59,7 @@ def box(space: str, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         lower[there] = lower[here]
     if rng.random() < 0.2:
         lower[[1, 3]] = 0.0
-    if len(lower) > 8 and rng.random() < 0.4:
+    if len(lower) > 9 and rng.random() < 0.4:
         lower[8:10] = lower[0:2] if rng.random() < 0.5 else lower[4:6]  # an obstacle at the start, or at the goal
     return lower, lower + scale * rng.choice([0.0, 1e-4, 0.03, 0.5], len(scale))
 
@@ -90,7 +91,7 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
     st.sampled_from(
         [
             *["relative", "projective", "projective-turn", "projective-periodic", "joints", "joints-lifted-friction"],
-            *["one-obstacle", "spot-handle"],
+            *["one-obstacle", "spot-handle", "straight-drive"],
         ]
     ),
     seeds,

@@ -19,6 +19,7 @@ RANGES = {  # where the features of the spaces lie, for thresholds to fall withi
         *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"
         *[(0, np.pi), (-np.pi / 2, np.pi / 2)],
     ],
+    "straight-drive": [(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi), (0, 1)],
     "relative": [(-6, 6), (-4, 4), (-np.pi, np.pi), (0, 0.75), (-np.pi, np.pi), (0, 0.75)],
     "one-obstacle": [
         *[(0, 0.75), (0, 0.75), (0, 6), (0, np.pi), (-np.pi, np.pi)],  # those of "projective"

@@ -71,9 +71,12 @@ def _handle(argument: int) -> Parameter:
     return Parameter("handle", argument, "handle", "rad", -math.pi, math.pi, True, HANDLE_TURNED_RAD)
 
 
+# whether the stool has been seen, 1 or 0: observed, not chosen; then the robot backs off farther
+SEEN = Parameter("seen", 0, "seen", "1", 0.0, 1.0)
+
 GO_TO_POSE = Action(
     "goToPose",
-    (*_pose("", 0), _speed("", 0, V_MAX_MPS), *_pose("g", 1), _speed("g", 1, PASSING_MPS)),
+    (*_pose("", 0), _speed("", 0, V_MAX_MPS), *_pose("g", 1), _speed("g", 1, PASSING_MPS), SEEN),
     DriveToStand(
         GoToPose(
             V_MAX_MPS,

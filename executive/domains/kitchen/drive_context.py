@@ -24,7 +24,7 @@ TOUCHED = "touched furniture"
 HAND_BOTTOM_M, HAND_REACH_M = 1.03, 0.61  # of the folded arm: what is lower is met by the base alone
 BEND_M, RUN_IN_M = 0.45, 0.10  # radius of the bend into a far goal, and the straight piece after it
 DRIFT_M = 0.3  # most by which a robot leaves the place where it turns to a far goal
-STRAIGHT_M = 1.0  # nearer goals are driven to straight
+STRAIGHT_M = 1.0  # nearer goals are driven to straight, others perhaps
 SURE_M = 0.15  # beyond that from such a rectangle, drives met none of 6400 objects that they touched
 TOUCH_COST_S = 30.0  # a base that has driven against something mostly stays there until the action runs out of time
 

@@ -10,10 +10,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from tailor.executive.actions.go_to_pose import GoToPose
-from tailor.executive.actions.planar import PHIG, VG, XG, YG, PlanarBelief
+from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, PlanarBelief, X, Y
 from tailor.executive.belief.angles import difference
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
+
+SEEN = VG + 1  # argument: 1 where the stool has been seen, else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +35,17 @@ class Near:
 
 @dataclass(frozen=True, slots=True)
 class DriveToStand:
-    """Drives to a pose. Goals within `near_m` at the start: see this module.
+    """Drives to a pose. Goals within `near_m` at the start: see this module; behind the robot, within `back_m`.
 
-    The robot backs off where that needs less turning. It does so for short ways only: it sees ahead. Near goals that it
-    faces about as it drives ahead are passed in motion, if they ask for that; at the others it stops and turns.
+    The robot backs off where that needs less turning. It sees ahead, so it does so for short ways only, until it knows
+    where the stool is. Near goals that it faces about as it drives ahead are passed in motion, if they ask for that; at
+    the others it stops and turns.
     """
 
     far: GoToPose
     near_m: float = 1.0
+    back_m: float = 2.0  # so far it backs off where the stool has been seen: from any stand to the open middle,
+    back_rad: float = 2.2  # if it turns less than this in all: a bend takes 1 to 6 s longer then
     off_rad: float = 0.7  # it begins to drive when it faces the goal within this, the less the nearer it is
     steer_m: float = 0.15  # from here on it steers softer
     there_m: float = 0.05  # so near its goal it only turns
@@ -49,15 +54,28 @@ class DriveToStand:
     still_mps: float = 0.10
     still_radps: float = 0.4
 
+    def is_near(self, distance: float, bearing: float, start: float, end: float, seen: bool) -> bool:
+        """Whether it drives straight to a goal.
+
+        Args:
+          distance: From the robot, m.
+          bearing: Of the goal as seen from there, rad, in the frame of the headings.
+          start: Heading of the robot.
+          end: Heading at the goal.
+          seen: Whether the stool has been seen.
+        """
+        backs_off = seen and _turning(bearing + math.pi, start, end) < self.back_rad
+        return distance < (self.back_m if backs_off else self.near_m)
+
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
+        state = state or self._begun(arguments)
+        if isinstance(state, Far):
+            control = self.far(state.inner, now_ns, belief, arguments)
+            return Control(Far(control.state), control.command, control.outcome, control.detail)
         x, y, phi, vg = arguments[[XG, YG, PHIG, VG]].tolist()
         pose = belief.pose
-        distance, bearing = math.hypot(x - pose.x, y - pose.y), math.atan2(y - pose.y, x - pose.x)
-        if isinstance(state, Far) or (state is None and distance > self.near_m):
-            control = self.far(state.inner if state else None, now_ns, belief, arguments)
-            return Control(Far(control.state), control.command, control.outcome, control.detail)
-        state = state or Near("face", _side(bearing, pose.phi, phi))
+        distance, bearing = _sight(pose.x, pose.y, x, y)
         off = difference(bearing if state.side > 0 else bearing + math.pi, pose.phi)
         passes = vg > 0.0 and state == Near("drive", 1) and abs(difference(phi, pose.phi)) < self.far.heading_rad
         state = self._next(state, distance, off)
@@ -68,6 +86,14 @@ class DriveToStand:
         if state.phase == "face":
             return Control(state, (0.0, self._turn(off)))
         return Control(state, self._drive(state.side, distance, off, vg if passes else 0.0))
+
+    def _begun(self, arguments: Array) -> Far | Near:
+        """How it drives, by where that was decided: as predicted, although the robot has moved a little since."""
+        x, y, phi, xg, yg, phig, seen = arguments[[X, Y, PHI, XG, YG, PHIG, SEEN]].tolist()
+        distance, bearing = _sight(x, y, xg, yg)
+        if self.is_near(distance, bearing, phi, phig, seen >= 0.5):
+            return Near("face", _side(bearing, phi, phig))
+        return Far(None)
 
     def _next(self, state: Near, distance: float, off: float) -> Near:
         """The phase now, where the goal is `off` radians left of the direction of driving."""
@@ -98,10 +124,16 @@ class DriveToStand:
         return math.copysign(min(rate, self.far.omega_max_radps), off)
 
 
+def _sight(x: float, y: float, xg: float, yg: float) -> tuple[float, float]:
+    """Distance and bearing of a goal."""
+    return math.hypot(xg - x, yg - y), math.atan2(yg - y, xg - x)
+
+
 def _side(bearing: float, start: float, end: float) -> int:
     """1 to drive ahead, -1 to back off: whichever needs less turning from the start's heading to the end's."""
-    turning = {
-        side: abs(difference(heading, start)) + abs(difference(end, heading))
-        for side, heading in ((1, bearing), (-1, bearing + math.pi))
-    }
-    return 1 if turning[1] <= turning[-1] else -1
+    return 1 if _turning(bearing, start, end) <= _turning(bearing + math.pi, start, end) else -1
+
+
+def _turning(heading: float, start: float, end: float) -> float:
+    """Angle that a robot turns in all which drives with this heading."""
+    return abs(difference(heading, start)) + abs(difference(end, heading))

@@ -15,7 +15,7 @@ from tailor.schemas.kitchen.kinematics import V_MAX_MPS
 
 STAND = ("x", "y", "phi", "v")
 HAND = ("hand_x", "hand_y", "hand_aside")  # where the hand is, whatever the label
-OUT, IN = Interval(1.0, 1.0), Interval(0.0, 0.0)  # whether the arm has reached over the place before
+YES, NO = Interval(1.0, 1.0), Interval(0.0, 0.0)
 
 
 def value(query: LabelQuery) -> Interval | None:
@@ -23,12 +23,14 @@ def value(query: LabelQuery) -> Interval | None:
 
     A stand is where the robot is, or anywhere from which the arm reaches the place's spot: 0.4 to 0.8 m from the table.
     """
+    if query.quantity == "seen":
+        return YES if query.belief.thing("stool") is not None else NO
     if query.quantity in STAND:
         return _stand(query).get(query.quantity)
     if query.quantity in HAND:
         return _hand(query.belief)[query.quantity]
     if query.quantity == "out":
-        return OUT if ("open", query.label) in query.achieved or not query.belief.arm_is_home else IN
+        return YES if ("open", query.label) in query.achieved or not query.belief.arm_is_home else NO
     if query.quantity == "aside":
         return _aside(query)
     return _spot(query).get(query.quantity)

@@ -12,26 +12,26 @@ from tailor.models.features.drive_clearance.driving_robot import DrivingRobot
 from tailor.models.features.drive_clearance.poses import POSES, Drive, Poses, drive
 from tailor.models.features.drive_clearance.way import LARGE, cosines
 from tailor.models.features.features import FeatureSpace, Operations, Rows, length, quantities
-from tailor.models.features.planar import POSE
+from tailor.models.features.straight_drive import DRIVE, SEEN
 
 MOST_M, LEAST_M = 1.0, -0.4  # clearances beyond these make no difference
 # place and direction in the map, half length along that direction, half width, margin around, height
 BOX = quantities("box_x:m box_y:m box_phi:rad box_long:m box_wide:m box_r:m box_high:m")
 # the turn to the way, the angle of the bend or turn into the goal, the radius of that bend
-DRIVE = quantities("v:m/s dist:m turn:rad bend:rad radius:m")
+WAY = quantities("v:m/s dist:m turn:rad bend:rad radius:m")
 # of the base at the start, as it turns, drives straight, bends or turns into the goal, and there; of the hand likewise
 CLEAR = quantities("clear:m clear_turn:m clear_straight:m clear_bend:m clear_g:m hand_turn:m hand_bend:m hand_g:m")
-PHI, PHIG, BOX_X, BOX_PHI, LONG, WIDE, MARGIN, HIGH = 2, 6, 8, 10, 11, 12, 13, 14
+PHI, PHIG, BOX_X, BOX_PHI, LONG, WIDE, MARGIN, HIGH = 2, 6, 9, 11, 12, 13, 14, 15
 
 
 def beside_box(name: str, robot: DrivingRobot) -> FeatureSpace:
     """The feature space of a robot's drives beside one object."""
-    return FeatureSpace(name, (*POSE, *BOX), (*DRIVE, *CLEAR), partial(_features, robot))
+    return FeatureSpace(name, (*DRIVE, *BOX), (*WAY, *CLEAR), partial(_features, robot))
 
 
 def _features(robot: DrivingRobot, rows: Rows, ops: Operations) -> Rows:
     poses, goal = _seen_from_box(rows, ops)
-    planned = drive(robot, poses, rows[[3]], goal, ops)
+    planned = drive(robot, poses, rows[[3]], goal, rows[[SEEN]], ops)
     away = poses[[3, 4]] - poses[[0, 1]]
     return ops.stack(
         rows[[3]],

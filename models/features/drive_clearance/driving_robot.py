@@ -34,6 +34,9 @@ class DrivingRobot:
       v_max_mps: Maximum speed.
       bend_worth_radps: As in `ArrivalPath`.
       near_m: To nearer goals it turns, drives straight and turns.
+      back_m: So it does to goals nearer than this, too, if it turns in all by less than `back_rad` as it backs off, and
+        has seen what may stand behind it.
+      back_rad: See `back_m`.
       there_m: To goals as near as this it only turns.
       drift: In turning to far goals.
       braking_mps2: With which it brakes straight ahead before it turns, where it begins in motion.
@@ -46,6 +49,8 @@ class DrivingRobot:
     v_max_mps: float
     bend_worth_radps: float
     near_m: float
+    back_m: float
+    back_rad: float
     there_m: float
     drift: Drift
     braking_mps2: float

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from tailor.models.features.drive_clearance.driving_robot import Drift, DrivingRobot
-from tailor.models.features.drive_clearance.way import Way, cosines, planned, planned_again
-from tailor.models.features.features import TWO_PI, Operations, Rows, length
+from tailor.models.features.drive_clearance.way import Way, cosines, is_near, planned, planned_again
+from tailor.models.features.features import TWO_PI, Operations, Rows
 
 POSES = 8  # of each part of a drive
 TURNED: Any = np.linspace(0.0, 1.0, POSES, dtype=np.float32)[:, None]  # share of a turn or a bend
@@ -58,7 +58,7 @@ class Drive:
     arriving: Poses
 
 
-def drive(robot: DrivingRobot, poses: Rows, v: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Drive:
+def drive(robot: DrivingRobot, poses: Rows, v: Rows, goal: tuple[Rows, Rows], seen: Rows, ops: Operations) -> Drive:
     """The drive between poses.
 
     Args:
@@ -66,10 +66,10 @@ def drive(robot: DrivingRobot, poses: Rows, v: Rows, goal: tuple[Rows, Rows], op
       poses: Rows x, y, phi of the start, then of the goal, in any frame; shape (6, n).
       v: Speed at the start, shape (1, n); negative: it rolls back.
       goal: Cosine and sine of the goal's heading.
+      seen: As of `is_near`.
       ops: Operations of features.
     """
-    away = poses[[3, 4]] - poses[[0, 1]]
-    near = length(away[[0]], away[[1]], ops) < robot.near_m
+    near = is_near(robot, poses, seen, ops)
     poses = _rolled(robot, poses, v, ops)
     first = planned(robot, poses, goal, near, ops)
     turning = _turning(robot.drift, poses, first.turn, near, ops)

@@ -59,6 +59,21 @@ def cosines(angle: Rows, ops: Operations) -> tuple[Rows, Rows]:
     return cosine, sine * angle
 
 
+def is_near(robot: DrivingRobot, poses: Rows, seen: Rows, ops: Operations) -> Rows:
+    """Where the robot drives as to a near goal, shape (1, n).
+
+    Args:
+      robot: Which robot drives.
+      poses: As of `planned`.
+      seen: 1 where it has seen what may stand behind it, else 0; shape (1, n).
+      ops: Operations of features.
+    """
+    dist, _, _, turning = _straights(robot, poses, ops)
+    near_m = dist * 0.0 + robot.near_m
+    back_m = ops.where(seen < 0.5, near_m, near_m * 0.0 + robot.back_m)
+    return dist < ops.where(turning[[1]] < robot.back_rad, back_m, near_m)
+
+
 def planned(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], near: Rows, ops: Operations) -> Way:
     """The way between poses.
 
@@ -86,6 +101,16 @@ def _way(rows: Rows) -> Way:
 
 def _straight(robot: DrivingRobot, poses: Rows, ops: Operations) -> Rows:
     """Turn, drive straight, ahead or back, whichever needs less turning, and turn; the fields of a Way, (7, n)."""
+    dist, headings, turns, turning = _straights(robot, poses, ops)
+    both = ops.stack(turns, headings, dist, dist * -1.0)
+    chosen = ops.where(turning[[0]] < turning[[1]] + TIE, both[[0, 2, 4, 6]], both[[1, 3, 5, 7]])
+    end, zero = chosen[[1]], dist * 0.0
+    side = ops.where(end < 0.0, -1.0, zero + 1.0)
+    return ops.stack(chosen[[0, 2, 3]], side, ops.absolute(end), zero, zero)
+
+
+def _straights(robot: DrivingRobot, poses: Rows, ops: Operations) -> tuple[Rows, Rows, Rows, Rows]:
+    """Straight ways ahead and back: length (1, n), headings (2, n), both turns of each (4, n), their sums (2, n)."""
     away = poses[[3, 4]] - poses[[0, 1]]
     dx, dy, phi = away[[0]], away[[1]], poses[[2]]
     dist = length(dx, dy, ops)
@@ -93,12 +118,7 @@ def _straight(robot: DrivingRobot, poses: Rows, ops: Operations) -> Rows:
     headings = ops.stack(bearing, bearing + np.pi)
     turns = wrap(ops.stack(headings - phi, poses[[5]] - headings), ops)
     turning = ops.absolute(turns)
-    turning = turning[[0, 1]] + turning[[2, 3]]
-    both = ops.stack(turns, headings, dist, dist * -1.0)
-    chosen = ops.where(turning[[0]] < turning[[1]] + TIE, both[[0, 2, 4, 6]], both[[1, 3, 5, 7]])
-    end, zero = chosen[[1]], dist * 0.0
-    side = ops.where(end < 0.0, -1.0, zero + 1.0)
-    return ops.stack(chosen[[0, 2, 3]], side, ops.absolute(end), zero, zero)
+    return dist, headings, turns, turning[[0, 1]] + turning[[2, 3]]
 
 
 def _bent(robot: DrivingRobot, poses: Rows, goal: tuple[Rows, Rows], ops: Operations) -> Rows:

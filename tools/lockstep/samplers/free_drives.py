@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.actions.planar import PHI, PHIG, XG, YG, X, Y
 from tailor.executive.belief.angles import difference
+from tailor.executive.domains.kitchen.drive_to_stand import SEEN, DriveToStand
 from tailor.executive.interfaces.values import Array
 
 X_M, Y_M = (-1.75, 1.75), (-1.85, 0.95)  # between the tables; south of the fridge by what the arm reaches
@@ -20,14 +20,9 @@ FORWARD, FORWARD_RAD = 0.3, 0.5  # share of the goals that are faced about in th
 POINTS = 40
 
 
-def free_drive(ways: ArrivalPath, straight_m: float, rng: np.random.Generator) -> Array:
-    """Arguments of a drive from rest to rest, shape (8,).
-
-    Args:
-      ways: Paths into far goals.
-      straight_m: Nearer goals are driven to straight.
-      rng: Source of every draw.
-    """
+def free_drive(controller: DriveToStand, rng: np.random.Generator) -> Array:
+    """Arguments of a drive from rest to rest, shape (9,); the stool has been seen before every other one."""
+    seen = float(rng.integers(2))
     while True:
         x, y, phi = rng.uniform(*X_M), rng.uniform(*Y_M), rng.uniform(-math.pi, math.pi)
         distance, bearing = rng.uniform(*NEAR_M), rng.uniform(-math.pi, math.pi)
@@ -37,23 +32,24 @@ def free_drive(ways: ArrivalPath, straight_m: float, rng: np.random.Generator) -
         phig = rng.uniform(-math.pi, math.pi)
         if rng.random() < FORWARD:
             phig = math.atan2(yg - y, xg - x) + FORWARD_RAD * rng.standard_normal()
-        arguments = np.array([x, y, phi, 0.0, xg, yg, difference(phig, 0.0), 0.0])
-        if _is_free(_way(ways, straight_m, arguments)):
+        arguments = np.array([x, y, phi, 0.0, xg, yg, difference(phig, 0.0), 0.0, seen])
+        if _is_free(_way(controller, arguments)):
             return arguments
 
 
-def _way(ways: ArrivalPath, straight_m: float, arguments: Array) -> Array:
+def _way(controller: DriveToStand, arguments: Array) -> Array:
     """Places on the planned way, shape (POINTS, 2)."""
     start, goal = arguments[[X, Y]], arguments[[XG, YG]]
     dx, dy = (start - goal).tolist()
-    if math.hypot(dx, dy) < straight_m:
+    phi, phig, seen = arguments[[PHI, PHIG, SEEN]].tolist()
+    if controller.is_near(math.hypot(dx, dy), math.atan2(-dy, -dx), phi, phig, bool(seen)):
         straight: Array = start + np.linspace(0.0, 1.0, POINTS)[:, None] * (goal - start)
         return straight
-    c, s = math.cos(arguments[PHIG]), math.sin(arguments[PHIG])
-    heading = difference(float(arguments[PHI]), float(arguments[PHIG]))
-    path = ways.quickest((c * dx + s * dy, c * dy - s * dx, heading), 0.0)
-    seen = np.array([path.at(at)[:2] for at in np.linspace(0.0, path.length, POINTS)])
-    way: Array = goal + seen @ np.array([[c, s], [-s, c]])
+    c, s = math.cos(phig), math.sin(phig)
+    heading = difference(phi, phig)
+    path = controller.far.ways.quickest((c * dx + s * dy, c * dy - s * dx, heading), 0.0)
+    places = np.array([path.at(at)[:2] for at in np.linspace(0.0, path.length, POINTS)])
+    way: Array = goal + places @ np.array([[c, s], [-s, c]])
     return way
 
 

@@ -109,11 +109,14 @@ class KitchenSampler(KitchenOutcomes):
         return replace(believed, things=(Thing(CUP, x, y, z, phi, 0.0, 1e-5, 0),))
 
     def arguments_now(self, action: Action, belief: KitchenBelief, arguments: Array) -> list[float]:
-        """Training example: the drive from where the robot is now. What the arm does does not move the stand."""
+        """Training example: the drive from where the robot is now, decided by what it had seen at the start.
+
+        What the arm does does not move the stand.
+        """
         if action.name != "goToPose":
             return list(arguments.tolist())
         pose = belief.pose
-        return [pose.x, pose.y, pose.phi, max(0.0, belief.v), *arguments[XG : VG + 1].tolist()]
+        return [pose.x, pose.y, pose.phi, max(0.0, belief.v), *arguments[XG:].tolist()]
 
 
 def _spot(rng: np.random.Generator) -> tuple[Spot, float]:
@@ -133,13 +136,13 @@ def _stand(spot: Spot, rng: np.random.Generator) -> tuple[float, float, float]:
 
 
 def _between_stands(rng: np.random.Generator) -> Array:
-    return np.array([*_anywhere(rng), 0.0, *_anywhere(rng), 0.0])
+    return np.array([*_anywhere(rng), 0.0, *_anywhere(rng), 0.0, float(rng.integers(2))])
 
 
 def _through_open(action: Action, rng: np.random.Generator) -> Array:
     """A drive whose planned way keeps clear of everything; at rest or in motion at either end."""
     controller: DriveToStand = action.controller  # type: ignore[assignment]
-    arguments = free_drive(controller.far.ways, controller.near_m, rng)
+    arguments = free_drive(controller, rng)
     for at in (V, VG):
         arguments[at] = rng.uniform(0.0, action.parameters[at].upper) if rng.random() < IN_MOTION else 0.0
     return arguments

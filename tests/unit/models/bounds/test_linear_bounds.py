@@ -11,8 +11,7 @@ from tailor.models.bounds.network_bounds import NetworkBounds
 from tailor.models.features.spaces import feature_space
 
 COPIES = 4
-PLACES = (0, 1, 4, 5)  # arguments that are known; the angles and speeds vary
-FREE = (2, 3, 6, 7)
+FREE = (2, 3, 6, 7)  # arguments that vary: angles and speeds; the others are known
 
 
 def drawn_networks(rng: np.random.Generator, features: int) -> NetworkBounds:
@@ -35,19 +34,22 @@ def predicted(networks: NetworkBounds, rows: np.ndarray) -> np.ndarray:
 
 @settings(max_examples=150, deadline=None)
 @given(
-    st.sampled_from(["projective", "projective-periodic"]), st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.1, 1.0])
+    st.sampled_from(["projective", "projective-periodic", "straight-drive"]),
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([0.0, 0.1, 1.0]),
 )
 def test_no_mean_over_the_copies_lies_below_its_bound(space, seed, size):
     rng = np.random.default_rng(seed)
     features = feature_space(space)
-    moved = rng.normal(0, 1.0, (COPIES, 8)) * rng.choice([0.0, 0.1, 1.0])
-    middle = rng.uniform(-3, 3, 8)
-    radius = size * rng.uniform(0, 1, 8)
-    radius[list(PLACES)] = 0.0
+    count = len(features.arguments)
+    moved = rng.normal(0, 1.0, (COPIES, count)) * rng.choice([0.0, 0.1, 1.0])
+    middle = rng.uniform(-3, 3, count)
+    radius = size * rng.uniform(0, 1, count)
+    radius[[j for j in range(count) if j not in FREE]] = 0.0
     networks = drawn_networks(rng, features(middle[None]).shape[1])
     ends = (tuple((middle + moved + side * radius).T[:, :, None, None]) for side in (-1, 1))
-    value, slopes = linear_bound(networks, space, *ends, tuple(radius.reshape(8, 1, 1, 1)))
-    away = radius * rng.choice([-1.0, 0.0, 0.3, 1.0], (300, 8))
+    value, slopes = linear_bound(networks, space, *ends, tuple(radius.reshape(count, 1, 1, 1)))
+    away = radius * rng.choice([-1.0, 0.0, 0.3, 1.0], (300, count))
     means = np.mean([predicted(networks, features(middle + away + each)) for each in moved], axis=0)
     linear = value.item() + sum(slope.item() * away[:, j] for j, slope in slopes.items())
     assert set(slopes) <= set(FREE)

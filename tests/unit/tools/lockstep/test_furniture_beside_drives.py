@@ -76,7 +76,7 @@ def test_distances_are_those_of_base_and_hand(row, clear_m):
 
 def test_one_drive_gives_many_episodes_with_stools_low_and_tall_boxes(body):
     episodes, _ = runs_beside_objects(30, DOMAIN, "goToPose", body, range(3), lambda k: np.random.default_rng([3, k]))
-    rows = np.array([episode.arguments[8:] for episode in episodes])
+    rows = np.array([episode.arguments[9:] for episode in episodes])
     stool, tall = rows[:, 5] > 0, rows[:, 6] > 1.0
     assert all(kind.sum() > 5 for kind in (stool, tall, ~stool & ~tall))
     assert (rows[stool][:, [3, 4]] == 0).all()
@@ -85,7 +85,7 @@ def test_one_drive_gives_many_episodes_with_stools_low_and_tall_boxes(body):
 
 def test_the_planned_ways_of_free_drives_stay_in_the_open():
     rng = np.random.default_rng(0)
-    drives = np.array([free_drive(ACTION.controller.far.ways, ACTION.controller.near_m, rng) for _ in range(50)])
+    drives = np.array([free_drive(ACTION.controller, rng) for _ in range(50)])
     for k, (low, high) in ((0, X_M), (1, Y_M), (4, X_M), (5, Y_M)):
         assert ((low - 0.1 < drives[:, k]) & (drives[:, k] < high + 0.1)).all()
 
@@ -94,8 +94,8 @@ def test_what_a_drive_meets_may_be_met_and_what_is_far_may_not(body):
     episodes, _ = runs_beside_objects(40, DOMAIN, "goToPose", body, range(5), lambda k: np.random.default_rng([4, k]))
     touched = [e.arguments for e in episodes if e.failure]
     assert len(touched) > 20
-    assert all(may_meet(each[None, :8], each[None, 8:]).item() for each in touched)
-    drive = np.array([[0.0, 0.0, 0.0, 0.0, 0.8, 0.0, 0.0, 0.0]])
+    assert all(may_meet(each[None, :9], each[None, 9:]).item() for each in touched)
+    drive = np.array([[0.0, 0.0, 0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0]])
     low, tall = np.array([[0.4, 0.85, 0.0, 0.3, 0.3, 0.0, 0.7], [0.4, 0.85, 0.0, 0.3, 0.3, 0.0, 1.7]])
     assert may_meet(drive, np.array([low, tall])).tolist() == [[False], [True]]
 

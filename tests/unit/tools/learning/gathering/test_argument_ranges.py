@@ -59,7 +59,7 @@ def test_an_argument_that_is_always_the_same_has_a_range_without_width(monkeypat
         ("soccer", "goToPose", False, {"phi": (-3.15, 3.15)}),
         ("soccer", "goToPose", True, {"obstacle_r": (0.1, 0.3)}),
         ("arm", "reach", False, {"a": (-1.3, 1.3)}),
-        ("kitchen", "goToPose", True, {"box_r": (0.0, 0.3), "box_x": (-4.35, 4.7)}),
+        ("kitchen", "goToPose", True, {"box_r": (0.0, 0.3), "box_x": (-5.0, 4.65)}),
         ("kitchen", "goToPose", False, {"v": (0.0, 0.6)}),
     ],
 )
