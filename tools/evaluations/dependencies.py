@@ -13,7 +13,7 @@ from tailor.tools.learning.gathering.choosing_models import cached_models
 
 # Files that make or summarise runs, as patterns below ROOT, besides those of `runs_sha256`; the latter ones only some.
 EVERY = tuple(f"tools/evaluations/{name}.py" for name in ("costs", "outcome", "pinned", "task_runs", "tick_budget"))
-HAND_MADE = ("tools/evaluations/detour_*.py",)
+HAND_MADE = ("tools/evaluations/detours/*.py",)
 SEARCH = ("tools/evaluations/oracles/search.py",)
 FIGURES = (*EVERY, "tools/evaluations/paired_comparison.py", "tools/evaluations/models/*.py")  # of a set of models
 OVER_BUS = (

@@ -25,7 +25,7 @@ class Variant:
       refinement: Settings of refinement.
       pins: Choices that the run is forced to make: label, quantity, value.
       noise: Added to the seed of the body's noise.
-      hand_made: Whether controllers drive around objects by geometry (detour_controller.py), for a baseline.
+      hand_made: Whether controllers drive around objects by geometry (detours), for a baseline.
     """
 
     name: str

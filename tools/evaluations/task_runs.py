@@ -16,7 +16,7 @@ from tailor.executive import domains
 from tailor.executive.deliberation.context import Context, Settings, make_context
 from tailor.simnodes.world import World
 from tailor.tools.evaluations.dependencies import dependencies
-from tailor.tools.evaluations.detour_controller import with_detours
+from tailor.tools.evaluations.detours.controller import with_detours
 from tailor.tools.evaluations.journal import Journal
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant, outcome_of
 from tailor.tools.evaluations.pinned import PinnedDomain
@@ -94,7 +94,9 @@ def paired(first: Mapping[int, Outcome], second: Mapping[int, Outcome]) -> tuple
 
 
 def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str, float]]:
-    domain = with_detours(domains.load(task.domain)) if variant.hand_made else domains.load(task.domain)
+    domain = domains.load(task.domain)
+    if variant.hand_made:
+        domain = with_detours(domain, task.domain, task.scenario)
     scenario, start = domains.seeded_scenario(task.domain, task.scenario, seed)
     pins = {(label, quantity): value for label, quantity, value in variant.pins}
     drawing = np.random.default_rng([seed, PIN_STREAM])

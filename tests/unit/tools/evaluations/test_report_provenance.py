@@ -44,8 +44,8 @@ def hashed_after(monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "arguments"),
     [
-        ("detour_graph.py", (HAND_MADE,)),
-        ("detour_controller.py", (HAND_MADE,)),
+        ("graph.py", (HAND_MADE,)),
+        ("controller.py", (HAND_MADE,)),
         ("search.py", (PLAIN, dependencies.SEARCH)),
         ("shell.py", (PLAIN, dependencies.OVER_BUS)),
         ("loop.py", (PLAIN, dependencies.OVER_BUS)),
