@@ -45,6 +45,7 @@ class Geometry:
     Attributes:
       circles: Its parts, the base first.
       margins_m: How far it keeps from things: bends, noise; less where there is no other way.
+      spare_m: By which poses around a cylinder are farther from it than ways must be.
       passing_mps: Speed at poses on the way.
       mean_mps: For the time of a way.
       turn_radps: For the time of its turns on the spot.
@@ -53,6 +54,7 @@ class Geometry:
 
     circles: tuple[Circle, ...]
     margins_m: tuple[float, ...]
+    spare_m: float
     passing_mps: float
     mean_mps: float
     turn_radps: float
@@ -90,8 +92,8 @@ def objects_of(context: ActionContext, belief: Belief) -> Array:
 
 
 HAND = tuple(Circle(ahead_m, 0.0, 0.075, 1.03) for ahead_m in (0.40, 0.535))  # of the kitchen robot's folded arm
-GEOMETRIES: Mapping[str, Geometry] = {  # by domain
+GEOMETRIES: Mapping[str, Geometry] = {  # by domain; chosen on training starts
     # half its width; the margins are for the rail in bends, too
-    "soccer": Geometry((Circle(0.0, 0.0, 0.15),), (0.15, 0.10, 0.05), 0.5, 0.6, 1.4, 0.6),
-    "kitchen": Geometry((Circle(0.0, 0.0, 0.265), *HAND), (0.08, 0.05, 0.02), 0.35, 0.45, 0.6, 0.9),
+    "soccer": Geometry((Circle(0.0, 0.0, 0.15),), (0.12, 0.08, 0.05), 0.12, 0.5, 0.6, 1.4, 0.6),
+    "kitchen": Geometry((Circle(0.0, 0.0, 0.265), *HAND), (0.08, 0.05, 0.02), 0.06, 0.5, 0.45, 0.6, 0.9),
 }

@@ -16,8 +16,7 @@ from tailor.executive.interfaces.values import Array
 from tailor.tools.evaluations.detours.geometry import LONG, RADIUS, WIDE, Geometry, X, Y, distances
 from tailor.tools.evaluations.detours.legs import Legs
 
-SPARE_M = 0.12  # by which poses around a cylinder are farther from it than ways must be
-AROUND = 10  # poses around a cylinder, in both directions each
+AROUND = 16  # poses around a cylinder, in both directions each
 
 Way = tuple[float, tuple[Pose2, ...]]  # seconds, poses, the goal last
 
@@ -85,7 +84,7 @@ class DetourGraph:
         """Beside each cylinder, along its edge."""
         keep_m = self.geometry.circles[0].radius_m + self.margin_m
         for x, y, radius in self.objects[(self.objects[:, [LONG, WIDE]] == 0.0).all(1)][:, [X, Y, RADIUS]].tolist():
-            from_m = radius + self.geometry.circles[0].radius_m + self.geometry.margins_m[0] + SPARE_M
+            from_m = radius + self.geometry.circles[0].radius_m + self.geometry.margins_m[0] + self.geometry.spare_m
             for k in range(AROUND):
                 angle = math.tau * k / AROUND
                 at = x + from_m * math.cos(angle), y + from_m * math.sin(angle)
