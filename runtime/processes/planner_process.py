@@ -5,6 +5,7 @@ Owns the child, its files and its limits of time, output and memory. Does not pa
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import resource
@@ -148,14 +149,22 @@ class PlannerProcess:
     def _end(self, outcome: Outcome, reason: str) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._child.pid, signal.SIGKILL)  # a child that has ended may have left children
-        killed = outcome in ("timeout", "flood")  # on a thread that outlives the tick, and is awaited at the end
-        threading.Thread(target=self._tidy, args=(killed,), name="planner-end").start()
+        self._tidy_aside(killed=outcome in ("timeout", "flood"))
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._child.wait(_REAP_S)
         assert self._child.stdout is not None
         self._child.stdout.close()
         text = self._output[: self._max_bytes].decode("utf-8", errors="replace")
         self._answer = PlannerAnswer(outcome, text, reason)
+
+    def _tidy_aside(self, killed: bool) -> None:
+        """Tidy up on a thread that outlives the tick, and is awaited at the end of this process."""
+        try:
+            threading.Thread(target=self._tidy, args=(killed,), name="planner-end").start()
+        except RuntimeError:  # the system has no thread left; what may take long is left to the end of this process
+            if killed:
+                end_session(self._child.pid, rounds=1)
+            atexit.register(self._folder.cleanup)
 
     def _tidy(self, killed: bool) -> None:
         """Remove the files; those of the planner as well, which may be many, once nobody writes more beside them."""

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -134,6 +135,46 @@ time.sleep(60)"""
 
     folder = repeat_on_stall(3, written)
     wait_until(lambda: not folder.exists(), "the files are removed")
+
+
+@pytest.fixture
+def without_threads(monkeypatch):
+    """No thread can be started; what is left to the end of this process."""
+
+    def refuse(thread):
+        raise RuntimeError("can't start new thread")
+
+    at_exit = []
+    monkeypatch.setattr(threading.Thread, "start", refuse)
+    monkeypatch.setattr("atexit.register", at_exit.append)
+    return at_exit
+
+
+@pytest.mark.promise("P8")
+def test_a_planner_is_killed_with_its_whole_session_where_no_thread_can_be_started(tmp_path, without_threads):
+    body = """
+other = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"], process_group=0)
+folder = os.path.dirname(sys.argv[1])
+with open(folder + "/other", "w") as file: print(other.pid, file=file)
+os.rename(folder + "/other", folder + "/started")
+time.sleep(60)"""
+    child = PlannerProcess(program(tmp_path, body), "", "", LIMIT_S)
+    folder = Path(child._folder.name)
+    wait_until((folder / "started").exists, "the planner has started another process")
+    other = int((folder / "started").read_text())
+    child.kill()
+    assert child.poll().outcome == "timeout"
+    assert gone(child.pid)
+    assert gone(other)
+    for tidy in without_threads:
+        tidy()
+    assert not folder.exists()
+
+
+def test_a_planner_has_its_answer_where_no_thread_can_be_started(tmp_path, without_threads):
+    _, answer, _ = run(program(tmp_path, "print('a plan')"))
+    assert (answer.outcome, answer.output) == ("answered", "a plan\n")
+    assert len(without_threads) == 1
 
 
 def test_a_planner_that_crashes_has_no_plan(tmp_path):
