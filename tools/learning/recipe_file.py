@@ -25,6 +25,21 @@ def recipe_path(robot: str) -> Path:
     return models_folder(robot) / robot / RECIPE
 
 
+def recipe_of(robot: str) -> Recipe:
+    """Recipe of a robot's package.
+
+    Raises:
+      UsageError: There is no such robot, its package has no recipe, or see `read_recipe`.
+    """
+    path = recipe_path(robot)
+    if not path.is_file():
+        raise UsageError(
+            f"robot {robot} has no recipe by which its models could be made anew, expected a file {path} with at least "
+            "`episodes = NUMBER` (docs/learning.md)"
+        )
+    return read_recipe(path)
+
+
 def read_recipe(path: Path) -> Recipe:
     """Read a recipe.
 

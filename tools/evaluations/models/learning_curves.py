@@ -33,7 +33,7 @@ from tailor.tools.learning.fresh_seeds import DIGITS
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.steps import make
 from tailor.tools.learning.recipe import Recipe, Round
-from tailor.tools.learning.recipe_file import read_recipe, recipe_path
+from tailor.tools.learning.recipe_file import recipe_of
 from tailor.tools.parallel.steps import show
 
 BESIDE = 40  # runs beside objects: too few for a good model, enough to start; the scenario needs no objects
@@ -152,7 +152,7 @@ def _row(point: Point, sets: Sequence[dict[str, float]], starts: int) -> dict[st
 def _figures(point: Point, number: int, settings: argparse.Namespace) -> dict[str, float]:
     """What one set of models gains, and how far it errs; found again if it was measured before."""
     robot = domains.load(settings.domain).robot
-    shipped = read_recipe(recipe_path(robot))
+    shipped = recipe_of(robot)
     recipe = point.recipe(shipped, settings.scenario, FIRST_RECIPE_SEED + number)
     work = settings.store / "learning-curves" / str(recipe.episodes)
     making = Making(robot, recipe, work, settings.jobs, "tailor evaluate learning-curves", CHOOSING)

@@ -27,6 +27,7 @@ from tailor.tools.evaluations.paired_comparison import (
 from tailor.tools.evaluations.refinement.replicas import Recipe, replica
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.evaluations.task_runs import run_all
+from tailor.tools.learning.recipe_file import recipe_of
 
 DEFAULT = RefinementSettings()
 GREEDY = Variant("h1", replace(DEFAULT, horizon=1))
@@ -69,6 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not domain:
         raise UsageError("no domain named, expected --domain NAME")
     arguments.scenario = arguments.scenario or domains.scenarios(domain)[0]
+    if arguments.model_episodes:
+        recipe_of(domains.load(domain).robot)  # raises before anything runs
     seeds = seeds_of(domain, arguments)
     starts = seeds.starts(arguments.episodes)
     found = _run(domain, arguments.zoo, ABLATIONS, starts, arguments)

@@ -17,7 +17,7 @@ from tailor.tools.evaluations.paired_comparison import mean_interval, p_shown
 from tailor.tools.learning.making.making import CHOOSING, Making
 from tailor.tools.learning.making.steps import make
 from tailor.tools.learning.recipe import Round
-from tailor.tools.learning.recipe_file import read_recipe, recipe_path
+from tailor.tools.learning.recipe_file import recipe_of
 from tailor.tools.parallel.steps import show
 
 FIRST_SEED = 5_000  # of gathering and training; what ships is gathered with small ones
@@ -71,7 +71,7 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     Raises:
       UsageError: The robot's models have no recipe, or see `make`.
     """
-    shipped = read_recipe(recipe_path(recipe.robot))
+    shipped = recipe_of(recipe.robot)
     training = replace(shipped.training, seed=FIRST_SEED + SEEDS * number)  # a set differs in all that is drawn
     own = replace(shipped, seed=training.seed, training=training)
     if recipe.episodes is not None:
