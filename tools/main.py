@@ -13,7 +13,7 @@ from typing import NoReturn
 
 from tailor import __version__
 from tailor.schemas.errors import UnreachableError, UsageError
-from tailor.tools.cli.closed_streams import replace_closed_streams
+from tailor.tools.cli.closed_streams import drop_failed_output, replace_closed_streams
 from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.termination import interrupted_by_sigterm
@@ -75,6 +75,7 @@ GROUPS = {
     "measure": "evaluations and benchmarks",
     "completion": "the shell",
 }
+PRINTING = [[name] for name in ("completion", "compare", "info", "models", "plan", "why")]  # what they print is all
 WITH_WORKERS = ("learn", "measure")  # groups of commands that start processes of their own
 
 
@@ -89,8 +90,8 @@ def main(argv: Sequence[str] | None = None) -> int:
       SIGTERM; 75 (EX_TEMPFAIL of sysexits.h) if what another process provides is not there and a supervisor, such as
       systemd, may try again.
     """
-    replace_closed_streams()
     arguments = list(sys.argv[1:] if argv is None else argv)
+    replace_closed_streams(prints=arguments[:1] in PRINTING)
     name = " ".join(["tailor", *arguments[:1]])
     is_supervised = "NOTIFY_SOCKET" in os.environ  # a process takes it out
     _replace_what_cannot_be_printed()
@@ -119,6 +120,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         path = "" if error.filename is None else f"{error.filename}: "
         expected = ", expected a folder" if isinstance(error, FileExistsError | NotADirectoryError) else ""
         _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}{expected}')}")
+        drop_failed_output()
         return 1 if error.filename is None else 2
 
 
