@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from tailor.schemas.errors import UsageError
-from tailor.tools.figures.paths import COLOURS, across, corners, draw_goals, limits_of, size_in
+from tailor.tools.figures.paths import COLOURS, across, corners, draw_goals, limits_of, line_through, size_in
 from tailor.tools.figures.track import Track, TrackPoint
 
 SUFFIXES = (".gif", ".webp", ".apng")
@@ -46,9 +46,7 @@ class MovingPath:
         points = [p for p in self.track.points if p.time_s - self.track.points[0].time_s <= since_s + 1e-6]
         headed = [p for p in points if p.phi is not None]
         self._way.set(segments=[across(p) for p in headed], colors=[self._colours[p.action] for p in headed])
-        self._line.set_data(
-            *zip(*((p.x, p.y) for p in points if p.phi is None), strict=True) if not headed else ([], [])
-        )
+        self._line.set_data(*line_through(points, [] if headed else [(p.x, p.y) for p in points]))
         now = points[-1]
         for outline, name, patch in self._parts:
             place = (now.x, now.y, now.phi or 0.0) if outline.on_robot else now.objects.get(name)

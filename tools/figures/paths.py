@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
 from tailor.tools.figures.track import Track, TrackPoint
-from tailor.tools.scenes.flat import Outline
+from tailor.tools.scenes.flat import Outline, Point
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf")  # one for each in the legend
 HALF_WIDTH_PER_SPEED_S = 0.16  # a robot at 0.9 m/s draws a line 0.29 m wide
@@ -64,7 +64,7 @@ def draw_path(axis: Any, track: Track) -> None:
         if any(p.phi is not None for p in points):
             axis.add_collection(mc.LineCollection([across(p) for p in points], colors=colour, linewidths=1.4))
         else:
-            axis.plot([p.x for p in points], [p.y for p in points], color=colour, linewidth=1.8)
+            axis.plot(*line_through(points, [(p.x, p.y) for p in points]), color=colour, linewidth=1.8)
         axis.plot([], [], color=colour, label=_label(track, number, points[0].name))
         names.append(points[0].name)
     _draw_objects(axis, track)
@@ -85,6 +85,17 @@ def _draw_legend(axis: Any) -> None:
         axis.legend(handles, labels, ncols=2, fontsize="small", **place)
 
 
+def line_through(points: Sequence[TrackPoint], places: Sequence[Point]) -> tuple[list[float], list[float]]:
+    """Coordinates of a line through the places of points, x and y apart, broken (NaN) where the driver restarts."""
+    gap = (math.nan, math.nan)
+    broken = [
+        each
+        for point, before, place in zip(points, [*points[:1], *points], places, strict=False)
+        for each in ([place] if point.restart == before.restart else [gap, place])
+    ]
+    return [x for x, _ in broken], [y for _, y in broken]
+
+
 def across(point: TrackPoint) -> list[tuple[float, float]]:
     """The line across the heading, its length the speed."""
     half = HALF_WIDTH_PER_SPEED_S * abs(point.v) + 0.005
@@ -103,9 +114,10 @@ def _label(track: Track, number: int, name: str) -> str:
 def _draw_objects(axis: Any, track: Track) -> None:
     """Path of every object, with its outline filled at the start and bare at the end."""
     for name in sorted(track.outlines):
-        places = [point.objects[name] for point in track.points if name in point.objects]
+        points = [point for point in track.points if name in point.objects]
+        places = [point.objects[name] for point in points]
         outline, colour = track.outlines[name], track.outlines[name].colour[:3]
-        axis.plot([p[0] for p in places], [p[1] for p in places], color=colour, linewidth=0.8, alpha=0.5, zorder=0)
+        axis.plot(*line_through(points, [p[:2] for p in places]), color=colour, linewidth=0.8, alpha=0.5, zorder=0)
         axis.fill(*corners(outline, places[0]), facecolor=colour, zorder=3)
         axis.fill(*corners(outline, places[-1]), fill=False, edgecolor=colour, zorder=3)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from tailor.schemas.messages import ActionFinished, ExecStatus, Message, Subgoals, TickReport
+from tailor.schemas.messages import ActionFinished, DriverState, ExecStatus, Message, Subgoals, TickReport
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import result_text
 from tailor.tools.cli.plain_text import plain
+from tailor.tools.scenes.driver_starts import DriverStarts
 from tailor.tools.scenes.flat import Outline, Point, flat, projected
 from tailor.tools.scenes.robot_scenes import TRUTH_TYPES, RobotScenes, Subgoal
 
@@ -17,7 +18,8 @@ from tailor.tools.scenes.robot_scenes import TRUTH_TYPES, RobotScenes, Subgoal
 class TrackPoint:
     """Scene every 0.1 s in metres, radians and m/s; `action` counts the actions since the start.
 
-    `phi` is None for a robot without a heading; `objects` are place and heading of things beside the robot.
+    `phi` is None for a robot without a heading; `objects` are place and heading of things beside the robot. `restart`
+    counts the restarts of the driver: where it changes, a simulator has put the robot elsewhere.
     """
 
     time_s: float
@@ -28,6 +30,7 @@ class TrackPoint:
     objects: dict[str, tuple[float, float, float]]
     action: int
     name: str
+    restart: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,7 @@ class Track:
     ticks: int = 0
     late_ticks: int = 0
     missed_ticks: int = 0
+    restarts: int = 0  # of the driver
     scene_fault: str = ""  # what the scene of the robot's package raised
 
     @property
@@ -67,7 +71,7 @@ class Track:
 
 
 LATE_NS = 50_000_000  # half a period
-READ = (ExecStatus, ActionFinished, Subgoals, TickReport, *TRUTH_TYPES)  # types that a track is made of
+READ = (ExecStatus, ActionFinished, DriverState, Subgoals, TickReport, *TRUTH_TYPES)  # types that a track is made of
 
 
 def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track:
@@ -78,7 +82,7 @@ def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track
       messages: Messages of the run.
       domain: Domain of the run, whose package draws it; empty: a robot on the plane, by convention.
     """
-    track, scenes = Track(title), RobotScenes(domain)
+    track, scenes, starts = Track(title), RobotScenes(domain), DriverStarts()
     believed: list[TrackPoint] = []
     status: ExecStatus | None = None
     executed: dict[tuple[int, bool, str], Subgoals] = {}  # the first action of every sequence, in its last version
@@ -97,6 +101,8 @@ def track_of(title: str, messages: Iterable[Message], domain: str = "") -> Track
             track.ticks += 1
             track.late_ticks += message.lateness_ns > LATE_NS
             track.missed_ticks += message.skipped
+        elif isinstance(message, DriverState):
+            track.restarts += starts.is_another(message)
         elif isinstance(message, TRUTH_TYPES) and status is not None:
             stamp_ns = getattr(message, "stamp_ns", 0)
             track.points += _points(track, scenes, scenes.of_truth(message), status, stamp_ns)
@@ -119,7 +125,10 @@ def _points(
     track.outlines |= {name: shown.outlines[name] for name in objects}
     track.body |= {name: outline for name, outline in shown.outlines.items() if outline.on_robot and outline.closed}
     action = plain(status.action)  # matplotlib warns of a character that it cannot draw, and prints it as it is
-    yield TrackPoint(stamp_ns / 1e9, shown.x, shown.y, shown.phi, shown.speed_mps, objects, status.action_index, action)
+    pose = shown.x, shown.y, shown.phi
+    yield TrackPoint(
+        stamp_ns / 1e9, *pose, shown.speed_mps, objects, status.action_index, action, restart=track.restarts
+    )
 
 
 def _is_object(outline: Outline) -> bool:

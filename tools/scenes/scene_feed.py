@@ -15,6 +15,7 @@ from tailor.schemas.packages.pose3 import Pose3, on_plane
 from tailor.schemas.packages.scene import BASE, MAP, ODOM, Scene, arrow, frame, line, on_map, pose_of, sphere, text
 from tailor.schemas.parsed_files import table_of
 from tailor.schemas.topics import TOPICS, key_of
+from tailor.tools.scenes.driver_starts import DriverStarts
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, Subgoal
 from tailor.tools.scenes.run_log import RunLog
 
@@ -41,6 +42,8 @@ class SceneFeed:
         self._scenes = RobotScenes(domain) if domain else None
         self._odometry: m.Odometry | None = None
         self._subgoals: tuple[Subgoal, ...] = ()
+        self._starts = DriverStarts()
+        self._restarted = False  # the driver has, and no action has begun since
         self._way: deque[tuple[float, float, float]] = deque(maxlen=WAY_POINTS)
         self._status: m.ExecStatus | None = None
         self._sent_s: dict[str, float] = {}  # by topic
@@ -78,6 +81,8 @@ class SceneFeed:
             self._scenes = RobotScenes(domain) if domain else None
         elif isinstance(message, m.Odometry) and key == key_of("odom", self.robot):
             self._odometry = message
+        elif isinstance(message, m.DriverState) and key == key_of("driver", self.robot):
+            self._restarted = self._starts.is_another(message) or self._restarted
         elif isinstance(message, m.Contexts) and self._scenes is not None:
             self._scenes.note(message)
         elif isinstance(message, m.Subgoals) and self._scenes is not None:
@@ -89,8 +94,9 @@ class SceneFeed:
         return []
 
     def _believed(self, at_s: float, status: m.ExecStatus, scenes: RobotScenes) -> list[Published]:
-        if self._status is not None and status.action_index < self._status.action_index:
-            self._way.clear()  # another task
+        if self._restarted or (self._status is not None and status.action_index < self._status.action_index):
+            self._way.clear()  # a simulator has put the robot elsewhere, and it is believed there by the next action
+        self._restarted = self._restarted and not status.action
         self._status = status
         scene = scenes.of_belief(status.belief)
         if scene is None:

@@ -13,6 +13,7 @@ from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
+from tailor.tools.scenes.driver_starts import DriverStarts
 from tailor.tools.scenes.flat import Outline, flat, projected
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, planar_pose
 from tailor.tools.viewer import event_fields
@@ -65,6 +66,7 @@ class RunTimeline:
         self._explainer = explainer
         self._scenes = RobotScenes()
         self._silence = Silence()
+        self._starts = DriverStarts()
         self._action_index = -1  # of the action in execution
         self._last: dict[str, Any] = {}  # by kind: last fields of states; by key: last reports
         self._outlines: dict[str, Outline] = {}  # by kind: the last ones
@@ -121,7 +123,8 @@ class RunTimeline:
             case m.PlanReport():
                 return [("plan", plan_graph(message))]
             case m.DriverState():
-                return self._changed("driver", event_fields.driver(message))
+                anew: Rows = [("restart", {})] if self._starts.is_another(message, key) else []
+                return anew + self._changed("driver", event_fields.driver(message))
             case m.EStop():
                 return self._stops(message)
         return self._other(at_s, key, message)

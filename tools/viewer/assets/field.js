@@ -49,14 +49,14 @@ class Field {
   /** Path of one episode: a drawing for each action, pale in the future. */
   layEpisode(from, to) {
     this.from = from;
-    this.path = this.run.between(this.run.source(), from, to);
-    this.segments = segmentsOf(this.path);
+    this.pieces = this.run.pieces(this.run.source(), from, to);
+    this.path = this.pieces.flat();
+    this.segments = this.pieces.flatMap(segmentsOf);
     for (const segment of this.segments) segment.element = svg("path", { d: this.way(segment.points) });
-    const ghost =
-      this.run.source() === "truth" ? this.run.between("believed", from, to).map((p) => this.map(p.x, p.y)) : [];
+    const ghosts = this.run.source() === "truth" ? this.run.pieces("believed", from, to) : [];
     this.still.replaceChildren(
       ...this.segments.map((s) => s.element),
-      svg("path", { class: "ghost", d: through(ghost) }),
+      svg("path", { class: "ghost", d: this.lines(ghosts, (p) => [p.x, p.y]) }),
       ...this.objectPaths(),
     );
   }
@@ -68,12 +68,18 @@ class Field {
       const outline = this.outline(name, Infinity);
       if (outline.robots || !outline.closed) return [];
       const first = this.path.find((p) => p.places?.[name]).places[name];
-      const points = this.path.map((p) => (p.places?.[name] ? this.map(...p.places[name]) : null));
+      const d = this.lines(this.pieces, (p) => p.places?.[name]);
       return [
-        svg("path", { class: "objectpath", style: `stroke:${outline.colour}`, d: through(points) }),
+        svg("path", { class: "objectpath", style: `stroke:${outline.colour}`, d }),
         svg("path", { class: "objectstart", style: `stroke:${outline.colour}`, d: this.corners(outline, first) }),
       ];
     });
+  }
+
+  /** A line through each of several pieces, also broken where a sample has no place. */
+  lines(pieces, placeOf) {
+    const points = (piece) => piece.map(placeOf).map((place) => (place ? this.map(...place) : null));
+    return pieces.map((piece) => through(points(piece))).join("");
   }
 
   colourStrokes(at) {

@@ -91,6 +91,22 @@ class Run {
     return this.all(kind).slice(this.count(kind, from - 1e-9), this.count(kind, to));
   }
 
+  /** Samples of a source of the pose between two times, in pieces: a simulator that starts anew begins elsewhere. */
+  pieces(source, from, to) {
+    const restarts = this.between("restart", from, to).map((row) => row.at);
+    if (restarts.length === 0) return [this.between(source, from, to)];
+    const before = (at) => this.count(source, at - 1e-9);
+    const begins = [from, ...restarts.map((at) => (source === "believed" ? this.nextAction(at) : at))];
+    const ends = [...restarts.map(before), this.count(source, to)];
+    return begins.map((begin, i) => this.all(source).slice(before(begin), ends[i]));
+  }
+
+  /** Time of the next action: by then the executive believes where a robot is that has started anew. */
+  nextAction(at) {
+    const rows = this.all("action").slice(this.count("action", at - 1e-9));
+    return rows.find((row) => row.index >= 0)?.at ?? Infinity;
+  }
+
   about() {
     return this.last("about") ?? {};
   }

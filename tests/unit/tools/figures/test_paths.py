@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from tailor.tools.figures.paths import HIGHEST_IN, LABELLED, PANEL_IN, draw_path, figure_of, size_in
 from tailor.tools.figures.track import Track, TrackPoint
+from tailor.tools.scenes.flat import Outline
 
 
 def labels_of(actions: int) -> list[str]:
@@ -46,3 +50,17 @@ def test_a_flat_run_makes_a_flat_picture_and_a_steep_one_ends(wide_m: float, hig
     still = [TrackPoint(0.0, 0.0, 0.0, 0.0, 1.0, {}, 0, "go")] * 2
     height = size_in([Track("run", points)])[1] - size_in([Track("still", still)])[1]
     assert height == pytest.approx(PANEL_IN * (of_panel - 1.0))
+
+
+def test_no_line_leads_to_where_a_simulator_has_put_a_robot_and_its_objects_at_a_restart() -> None:
+    axis = Figure().subplots()
+    points = [
+        TrackPoint(t, t + 9 * restart, 0.0, None, 1.0, {"ball": (t + 9 * restart, 1.0, 0.0)}, 0, "go", restart)
+        for t, restart in ((0.0, 0), (1.0, 0), (2.0, 1), (3.0, 1))
+    ]
+    outline = Outline(((0.0, 0.0), (0.1, 0.0), (0.1, 0.1)), True, (1.0, 0.0, 0.0, 1.0))
+    draw_path(axis, Track("run", points, outlines={"ball": outline}))
+    drawn = [line.get_xdata() for line in axis.get_lines() if len(line.get_xdata()) > 1]
+    expected = [0.0, 1.0, math.nan, 11.0, 12.0]
+    assert len(drawn) == 2
+    np.testing.assert_equal(np.array(drawn), np.array([expected, expected]))

@@ -7,7 +7,7 @@ import pytest
 
 from tailor.runtime.recordings import recording
 from tailor.schemas.errors import Rejected
-from tailor.schemas.messages import ExecStatus, Provenance
+from tailor.schemas.messages import DriverState, ExecStatus, Provenance
 from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.figures.track import READ, track_of
 from tailor.tools.main import main
@@ -48,3 +48,13 @@ def test_a_scene_that_raises_is_named_where_nothing_can_be_drawn(tmp_path, monke
     assert main(["picture", str(path), "-o", str(tmp_path / "p.png")]) == 2
     expected = "its robot's scene cannot be drawn: of_belief: KeyError: 'colour'"
     assert capsys.readouterr().err == f"tailor picture: {path}: {expected}\n"
+
+
+def test_a_track_counts_the_restarts_of_the_driver() -> None:
+    own = [each for _, each in recording.open_recording(GOLDEN / "soccer-approach.mcap").decoded(READ)]
+    half = len(own) // 2
+    anew = [replace(each, epoch=each.epoch + 1) if isinstance(each, DriverState) else each for each in own[half:]]
+    restarts = [point.restart for point in track_of("t", own[:half] + anew, "soccer").points]
+    assert restarts == sorted(restarts)
+    assert set(restarts) == {0, 1}
+    assert {point.restart for point in track_of("t", own, "soccer").points} == {0}

@@ -252,3 +252,20 @@ def test_the_log_has_a_line_for_each_change_and_none_for_a_repetition():
     assert [line.text for line in lines[:3]] == ["EXECUTING", begins, "goToPose done after 1.20 s"]
     assert lines[3].text == begins, "another action of the same name"
     assert (lines[4].level, lines[4].stamp_ns, len(lines)) == (m.WARNING, 8, 5)
+
+
+def test_the_way_begins_anew_with_the_first_action_after_a_restart_of_the_driver():
+    feed = soccer_feed()
+
+    def way(at_s, x, action):
+        scene = dict(published(feed, (at_s, "exec/status", status((x, *BELIEF[1:]), action))))["scene"]
+        return [shape.points[::3] for shape in scene.shapes if shape.name == "way"]
+
+    def driver(epoch):
+        assert published(feed, (0.0, "agilo/driver", m.DriverState(0, "disarmed", "", "", epoch, "", 0))) is not None
+
+    driver(1)
+    assert [len(way(at_s, at_s, "goToPose")) for at_s in (1.0, 2.0)] == [0, 1]
+    driver(2)
+    assert [way(at_s, x, "") for at_s, x in ((3.0, 2.0), (4.0, 30.0))] == [[], []]  # the belief follows
+    assert [way(at_s, x, "goToPose") for at_s, x in ((5.0, 30.0), (6.0, 31.0))] == [[], [pytest.approx((30.0, 31.0))]]

@@ -37,13 +37,35 @@ for (let at = 1; at < 50000; at++) {
 }
 console.log(JSON.stringify({plan: run.last("plan").status, subgoals: run.last("subgoals").number, kept: run.kept()}));
 """
+RESTART = """
+const made = [];
+const element = () => ({ setAttribute(name, value) { this[name] = value; }, append() {}, replaceChildren() {} });
+globalThis.document = { createElement: element, createElementNS: () => (made.push(element()), made.at(-1)) };
+const run = new Run();
+run.add([0, "outline truth ball", {robots: false, closed: true, onRobot: false, points: [[0, 0]], colour: "red"}]);
+run.add([0, "action", {index: 0, action: "go"}]);
+run.add([2, "action", {index: -1, action: ""}]);
+run.add([3, "restart", {}]);
+run.add([5, "action", {index: 1, action: "go"}]);
+const truth = [0, 1, 2, 30, 30, 31, 32], believed = [0, 1, 2, 2, 30, 31, 32];
+truth.forEach((x, at) => {
+  const index = at < 2 ? 0 : at < 5 ? -1 : 1;
+  run.add([at, "truth", {x, y: 0, phi: null, index, places: {ball: [x + 1, 0, 0]}}]);
+  run.add([at, "believed", {x: believed[at], y: 0, phi: null, index}]);
+});
+const field = new Field(run, null);
+Object.assign(field, { still: element(), map: (x, y) => [x, y], headed: false });
+field.layEpisode(...run.episode(0));
+const paths = made.map((each) => each.d).filter((d) => d && !d.endsWith("Z"));
+console.log(JSON.stringify(paths.map((path) => path.split("M").slice(1))));
+"""
 needs_node = pytest.mark.skipif(NODE is None, reason="no Node.js here: install Debian's package nodejs")
 
 
 def printed(script: str) -> Any:
     """What a script that uses the page's `Run` prints as JSON."""
     assets = resources.files("tailor.tools.viewer") / "assets"
-    scripts = [(assets / name).read_text("utf-8") for name in ("elements.js", "columns.js", "run.js")]
+    scripts = [(assets / name).read_text("utf-8") for name in ("elements.js", "columns.js", "run.js", "field.js")]
     whole = "\n".join([*scripts, script])
     return json.loads(subprocess.run([NODE, "-"], input=whole, capture_output=True, text=True, check=True).stdout)
 
@@ -62,3 +84,13 @@ def test_actions_whose_samples_a_live_page_has_forgotten_stand_where_they_were()
     *ended, running = found["actions"]
     assert running == pytest.approx([ALL_S - EACH_S, ALL_S, 18], abs=0.2)
     assert ended == [pytest.approx([EACH_S * k, EACH_S * (k + 1), 19], abs=0.2) for k in range(ALL_S // EACH_S - 1)]
+
+
+@needs_node
+def test_no_line_leads_to_where_a_simulator_has_put_the_robot_at_a_restart() -> None:
+    """What is believed follows later: its line goes on with the next action."""
+    drawn = [[[float(x) for x, _ in map(str.split, piece.split("L"))] for piece in path] for path in printed(RESTART)]
+    way, believed, ball = drawn[:-2], *drawn[-2:]
+    assert way == [[[0, 1]], [[2]], [[30, 30]], [[31, 32]]]
+    assert believed == [[0, 1, 2], [31, 32]]
+    assert ball == [[1, 2, 3], [31, 31, 32, 33]]

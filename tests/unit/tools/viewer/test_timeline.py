@@ -178,3 +178,16 @@ def test_a_page_can_carry_the_facts_of_any_provenance(path: tuple[str, ...], val
         config = {name: config}
     [event] = RunTimeline().events_of(0.0, "exec/provenance", m.Provenance(0, json.dumps({"config": config})))
     json.dumps(event.json_value(), allow_nan=False)
+
+
+def test_a_restart_of_the_driver_is_an_event_once() -> None:
+    timeline = RunTimeline()
+    states = [m.DriverState(0, "disarmed", "", "", epoch, "", 0) for epoch in (7, 7, 8, 8, 7, 8)]
+    events = [timeline.events_of(0.1 * k, "agilo/driver", state) for k, state in enumerate(states)]
+    assert ["restart" in kinds(each) for each in events] == [False, False, True, False, False, False]
+
+
+def test_drivers_of_two_robots_are_no_restart() -> None:
+    timeline = RunTimeline()
+    for epoch, key in enumerate(("agilo/driver", "b21/driver")):
+        assert "restart" not in kinds(timeline.events_of(0.0, key, m.DriverState(0, "disarmed", "", "", epoch, "", 0)))
