@@ -1,1 +1,1 @@
-"""Searches for a plan within limits: the built-in one, an external planner, or both."""
+"""Searches for a plan within limits: the built-in one, an external planner, or both; plans' least orderings."""

@@ -14,6 +14,7 @@ from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, T
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning import Domain, Plan, Problem, Step, Unsupported, parse_domain, parse_problem
+from tailor.tools.plan_search.transitive_reduction import transitive_reduction
 
 DEFAULT_TICK_S = 0.01
 ROUNDING_S = Fraction(1, 10**9)  # our times are whole nanoseconds
@@ -63,7 +64,7 @@ class Translation:
         instances = {step.id: self._instance(step.action) for step in plan.steps}
         if not self.timed:
             after: dict[Any, list[Any]] = {instance: [] for instance in instances.values()}
-            for i, j in reduced(plan.orderings):
+            for i, j in transitive_reduction(plan.orderings):
                 after[instances[i]].append(instances[j])
             return PartialOrderPlan(after, self.original.environment)
         timed = [
@@ -131,16 +132,6 @@ def _without_constant_goals(original: Any) -> tuple[Any, bool]:
         if not goal.is_bool_constant():
             writable.add_goal(goal)
     return writable, not any(goal.is_false() for goal in goals)
-
-
-def reduced(orderings: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The orderings of a transitive closure that no two others imply."""
-    pairs = set(orderings)
-    after: dict[int, set[int]] = {}
-    for i, j in pairs:
-        after.setdefault(i, set()).add(j)
-    none: set[int] = set()
-    return sorted((i, j) for i, j in pairs if not any(j in after.get(k, none) for k in after[i]))
 
 
 def _fraction(seconds: float) -> Fraction:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from tailor.executive.planning import Plan
+from tailor.tools.plan_search.transitive_reduction import transitive_reduction
 
 
 def bare_orderings(plan: Plan) -> list[tuple[int, int]]:
     """The orderings, which are closed, that neither a causal link nor two other orderings imply; sorted."""
-    after: dict[int, set[int]] = {}
-    for i, j in plan.orderings:
-        after.setdefault(i, set()).add(j)
     linked = {(link.producer, link.consumer) for link in plan.links}
-    implied = {i: set().union(*(after.get(k, set()) for k in later)) for i, later in after.items()}
-    return sorted((i, j) for i, j in set(plan.orderings) - linked if j not in implied[i])
+    return [ordering for ordering in transitive_reduction(plan.orderings) if ordering not in linked]

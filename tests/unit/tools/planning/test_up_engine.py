@@ -39,7 +39,6 @@ from unified_planning.test.examples import get_example_problems
 
 from tailor.tools.up_engine import register
 from tailor.tools.up_engine.supported import supported_kind
-from tailor.tools.up_engine.translation import reduced
 
 register()
 get_environment().credits_stream = None
@@ -275,7 +274,3 @@ def test_a_time_triggered_plan_of_a_problem_without_time_is_validated_in_its_ord
     with PlanValidator(name="tailor") as validator:
         assert validator.validate(problem, plan).status is status
     assert their_verdicts(problem, plan) == {status}
-
-
-def test_orderings_that_others_imply_are_left_out():
-    assert reduced([(1, 2), (2, 3), (1, 3), (1, 4)]) == [(1, 2), (1, 4), (2, 3)]
