@@ -5,8 +5,10 @@ from __future__ import annotations
 import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from functools import cache
 
 from tailor.runtime.bus import zenoh_config
+from tailor.runtime.bus.descriptors import CLIENT, ROUTER, require_descriptors
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
@@ -20,6 +22,7 @@ from tailor.schemas.services import ROLES, Role
 
 SELF_CONNECT_MS = 500
 PROBE_S = 0.5
+_require = cache(require_descriptors)  # once: zenoh keeps what it has for the next session
 
 
 @contextmanager
@@ -27,7 +30,7 @@ def open_router(listen: str = zenoh_config.DEFAULT_ENDPOINT) -> Iterator[Session
     """Router of an open bus at one endpoint, without local socket, passwords and rules; also a session like a client's.
 
     Raises:
-      UsageError: The port is in use, or cannot be listened at.
+      UsageError: The port is in use, or cannot be listened at, or this process may open too few files.
     """
     with ExitStack() as stack:
         with inherited_fifo():
@@ -98,9 +101,10 @@ def open_client(
 
     Raises:
       UnreachableError: No router responds within `timeout_s`, or the one of this machine hangs.
-      UsageError: The router refuses this user.
+      UsageError: The router refuses this user, or this process may open too few files.
     """
     zenoh_config.check_endpoint(connect)
+    _require(CLIENT)
     folder, timeout_ms = run_folder(connect), int(timeout_s * 1000)
     local = identity is None and folder.running()
     if local:
@@ -126,6 +130,7 @@ def _router(config: str, listen: str, keys: KeyProfile = PLAIN) -> AbstractConte
         reason = "the port is in use" if "in use" in cause else "cannot listen there"
         return UsageError(f"bus endpoint {listen}: {reason}; expected a free one, see --connect")
 
+    _require(ROUTER)
     return _opened(config, explain, "", keys, "launcher")
 
 

@@ -7,6 +7,7 @@ import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from tailor.runtime.bus.descriptors import require_descriptors
 from tailor.runtime.bus.opening import open_local_router
 from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
@@ -19,18 +20,20 @@ from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
 BY_CERTIFICATES = ("tls/", "quic/")  # protocols that need keys
+HOST_DESCRIPTORS, DESCRIPTORS_EACH = 23, 2  # measured: of the router and of starting a process; of each that runs
 GATEWAY_SILENCE_NS = 5_000_000_000  # of its main loop; floods keep only zenoh's threads busy
 
 
 @contextmanager
-def hosted_bus(settings: BusSettings, report: Callable[[str], None]) -> Iterator[Session]:
-    """The router's own session; start `gateways` beside it.
+def hosted_bus(settings: BusSettings, report: Callable[[str], None], processes: int = 0) -> Iterator[Session]:
+    """The router's own session; start `gateways` beside it, and as many other `processes` as are to run here.
 
     Raises:
-      UsageError: The bus runs already, an endpoint is in use, malformed or of no use there, or the keys for other
-        machines are missing.
+      UsageError: The bus runs already, an endpoint is in use, malformed or of no use there, the keys for other machines
+        are missing, or this process may open too few files.
     """
     _check(settings)
+    require_descriptors(HOST_DESCRIPTORS + DESCRIPTORS_EACH * (len(gateways(settings)) + processes))
     if settings.remote and (fault := out_of_date(identity_in(f"{settings.keys}/{ROUTER}"))):
         report(f"{fault}: no other machine opens a session")
     if settings.security == "open":

@@ -56,7 +56,7 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
     if config.record is not None:
         check_new_file(config.record)
     with (
-        hosted_bus(config.bus, screen.report) as session,
+        hosted_bus(config.bus, screen.report, 2 + config.scene + (config.record is not None)) as session,
         tempfile.TemporaryFile("w+") as printed,
         tempfile.TemporaryDirectory(prefix="tailor-") as folder,  # of this user alone
     ):
