@@ -33,21 +33,27 @@ class _Stretch:
     values: array[float] = field(default_factory=lambda: array("d"))  # sample after sample; NaN for none
 
 
-def packed(events: Iterable[Event]) -> tuple[list[str], list[str]]:
-    """All events as the page reads them, each row and block as JSON.
+class Packing:
+    """Events as the page reads them, in JSON: rows as they come, then blocks of the samples among them."""
 
-    Returns:
-      Rows [at, kind, fields] of what is no sample, and blocks of samples of one kind and form.
-      A block's `like` has the form of the fields, with the number of a column in place of each value.
-    """
-    rows: list[str] = []
-    samples: dict[str, list[_Stretch]] = {}
-    for event in events:
-        if is_sample(event.kind):
-            _add(samples.setdefault(event.kind, []), event)
-        else:
-            rows.append(compact_json(event.json_value()))
-    return rows, [compact_json(_block(kind, each)) for kind, stretches in samples.items() for each in stretches]
+    def __init__(self) -> None:
+        self._samples: dict[str, list[_Stretch]] = {}  # by kind
+
+    def rows(self, events: Iterable[Event]) -> Iterator[str]:
+        """Rows [at, kind, fields] of the events that are no samples; the samples are kept for `blocks`."""
+        for event in events:
+            if is_sample(event.kind):
+                _add(self._samples.setdefault(event.kind, []), event)
+            else:
+                yield compact_json(event.json_value())
+
+    def blocks(self) -> Iterator[str]:
+        """Blocks of samples of one kind and form, of all events so far.
+
+        A block's `like` has the form of the fields, with the number of a column in place of each value.
+        """
+        for kind, stretches in self._samples.items():
+            yield from (compact_json(_block(kind, each)) for each in stretches)
 
 
 def compact_json(value: Any) -> str:

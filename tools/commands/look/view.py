@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
 
 from tailor.runtime.gc_freeze import gc_disabled
+from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import beside, check_output, whole_output
@@ -18,9 +20,9 @@ from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.systems.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
-from tailor.tools.viewer.page import page
+from tailor.tools.viewer.page import page_parts
 from tailor.tools.viewer.recorded_events import DAMAGE, recorded_events
-from tailor.tools.viewer.side_by_side import side_by_side
+from tailor.tools.viewer.side_by_side import side_by_side_parts
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
 PORT = 7450
@@ -81,14 +83,25 @@ def _write(arguments: argparse.Namespace) -> int:
     page_of_first = beside(first, ".html")
     output: Path = arguments.output or (page_of_first.with_name("runs.html") if others else page_of_first)
     check_output("--output", output, (".html", ".htm"))
-    with gc_disabled():  # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
-        runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}
-        [title, *_] = runs
-        text = side_by_side(plain(output.stem), "", runs) if others else page(title, runs[title])
-    with whole_output(output) as whole:
-        whole.write_text(text, encoding="utf-8")
+    for path in recordings:
+        open_recording(path)  # raises before a folder is made for the page
+    runs = {title: _events(path, arguments) for title, path in _titles(recordings).items()}
+    [title, *_] = runs
+    parts = side_by_side_parts(plain(output.stem), "", runs) if others else page_parts(title, runs[title])
+    # the millions of values of an hour hold no cycles; visiting them is a fifth of the work
+    with gc_disabled(), whole_output(output) as whole, whole.open("w", encoding="utf-8") as file:
+        file.writelines(parts)
     print(output)
     return 0
+
+
+@contextmanager
+def _blamed_on(recording: Path) -> Iterator[None]:
+    """Name the recording if it cannot be read on, and not the page that is being written."""
+    try:
+        yield
+    except OSError as error:
+        raise UsageError(f"{recording}: {error.strerror or error}, expected a recording that can be read") from error
 
 
 def _titles(recordings: list[Path]) -> dict[str, Path]:
@@ -101,7 +114,7 @@ def _events(recording: Path, arguments: argparse.Namespace) -> Iterator[Event]:
     """Events of a recording, one after another; then what is missing of them is printed."""
     console, explainer = Console(stderr=True), _explainer(arguments)
     timeline, notes = RunTimeline(explainer, arguments.robot), list[str]()
-    with console.status(Text(plain(f"reading {recording}"))):
+    with console.status(Text(plain(f"reading {recording}"))), _blamed_on(recording):
         for event in recorded_events(recording, timeline, arguments.sender):
             if event.kind == DAMAGE:
                 notes.append(event.fields["text"])

@@ -16,7 +16,7 @@ from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas import messages as m
 from tailor.schemas.codec import encode
-from tailor.tools.viewer.columns import packed
+from tailor.tools.viewer.columns import Packing
 from tailor.tools.viewer.recorded_events import recorded_events
 from tailor.tools.viewer.timeline import Event, RunTimeline
 from tests.support import synthetic_run
@@ -44,6 +44,12 @@ def samples_of(block: dict) -> list:
 
     columns = [column(each, 1e4) for each in block["columns"]]
     return [(at, fields(block["like"], i)) for i, at in enumerate(column(block["at"], 1e3))]
+
+
+def packed(events) -> tuple[list, list]:
+    """The rows and the blocks of events."""
+    packing = Packing()
+    return list(packing.rows(events)), list(packing.blocks())
 
 
 def unpacked(blocks: list) -> list:

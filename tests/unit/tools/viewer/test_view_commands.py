@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import errno
 import json
 import os
 import re
 import shutil
+import tracemalloc
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,7 +25,9 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.tools.commands.look import compare, cut, picture, scene, view, why
 from tailor.tools.figures import alternatives
+from tailor.tools.main import main
 from tailor.tools.scenes import robot_scenes
+from tailor.tools.viewer.timeline import Event
 from tests.support import synthetic_run
 
 SENDERS = {"exec/": "ab" * 16}
@@ -272,3 +276,40 @@ def test_a_path_that_looks_like_markup_is_shown_and_copied(recording, tmp_path, 
     assert run(view, odd, "-o", tmp_path / "odd.html") == 0
     assert capsys.readouterr().err.startswith("alternatives are not shown: ")
     assert run(scene, odd, "-o", tmp_path / "odd.mcap") == 0
+
+
+@pytest.mark.parametrize("others", [[], ["other.mcap"]])
+def test_a_page_is_written_while_its_recording_is_read(recording, tmp_path, monkeypatch, capsys, others) -> None:
+    """Several copies of a page were in memory at once: 1.4 GB for 100 000 subgoals of 3.5 MB."""
+    paths = [recording, *(shutil.copy(recording, tmp_path / name) for name in others)]
+    text = "<" * 10_000
+    monkeypatch.setattr(view, "recorded_events", lambda *_: (Event(float(i), "goal", {"a": text}) for i in range(1000)))
+    tracemalloc.start()
+    try:
+        assert run(view, "--no-models", "-o", tmp_path / "page.html", *paths) == 0
+        assert tracemalloc.get_traced_memory()[1] < 8_000_000
+    finally:
+        tracemalloc.stop()
+    assert (tmp_path / "page.html").stat().st_size > 60_000_000 * len(paths)
+
+
+def test_a_recording_that_cannot_be_read_on_is_named_and_the_page_that_is_there_stays(
+    recording, tmp_path, monkeypatch, capsys
+) -> None:
+    def broken(*_):
+        yield Event(0.0, "goal", {})
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(view, "recorded_events", broken)
+    page = tmp_path / "page.html"
+    page.write_text("before")
+    assert main(["view", "--no-models", "-o", str(page), str(recording)]) == 2
+    expected = f"tailor view: {recording}: Input/output error, expected a recording that can be read\n"
+    assert capsys.readouterr().err == expected
+    assert (page.read_text(), list(tmp_path.iterdir())) == ("before", [page])
+
+
+def test_no_folder_is_made_for_the_page_of_what_is_no_recording(tmp_path, capsys) -> None:
+    (tmp_path / "no.mcap").write_text("no recording")
+    assert main(["view", "-o", str(tmp_path / "new" / "page.html"), str(tmp_path / "no.mcap")]) == 2
+    assert not (tmp_path / "new").exists()
