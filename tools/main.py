@@ -91,7 +91,8 @@ def main(argv: Sequence[str] | None = None) -> int:
       systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    replace_closed_streams(prints=arguments[:1] in PRINTING)
+    into_file = any(each.startswith(("-o", "--output")) for each in arguments)
+    replace_closed_streams(prints=arguments[:1] in PRINTING and not into_file)
     name = " ".join(["tailor", *arguments[:1]])
     is_supervised = "NOTIFY_SOCKET" in os.environ  # a process takes it out
     _replace_what_cannot_be_printed()

@@ -71,11 +71,8 @@ def drawn(lower: np.ndarray, upper: np.ndarray, rng: np.random.Generator, count:
     return lower + share * (upper - lower)
 
 
-@settings(max_examples=300, deadline=None)
-@given(spaces, seeds)
-def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed):
-    rng = np.random.default_rng(seed)
-    lower, upper = box(space, rng)
+def check_features(space: str, lower: np.ndarray, upper: np.ndarray, rng: np.random.Generator) -> None:
+    """The features of each of 200 points of a box lie in one of its cases."""
     spans = tuple(Span(np.full(SHAPE, a), np.full(SHAPE, b)) for a, b in zip(lower, upper, strict=True))
     seen = feature_space(space)(drawn(lower, upper, rng, 200))
     met = np.zeros(len(seen), bool)
@@ -84,6 +81,26 @@ def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed
             ends = [(np.float32(s.lower.item()), np.float32(s.upper.item())) for s in case.features]
             met |= np.all([(x >= a) & (x <= b) for x, (a, b) in zip(seen.T, ends, strict=True)], axis=0)
     assert met.all()
+
+
+@settings(max_examples=300, deadline=None)
+@given(spaces, seeds)
+def test_features_of_every_argument_in_a_box_lie_in_one_of_its_cases(space, seed):
+    rng = np.random.default_rng(seed)
+    check_features(space, *box(space, rng), rng)
+
+
+@settings(max_examples=300, deadline=None)
+@given(seeds)
+def test_so_do_those_of_drives_to_goals_behind_to_which_a_robot_perhaps_backs_off(seed):
+    rng = np.random.default_rng(seed)
+    phi, distance_m = rng.uniform(-3.0, 3.0), rng.uniform(0.8, 2.2)
+    bearing = phi + np.pi + rng.normal(0.0, 0.8)
+    heading = bearing + np.pi + rng.normal(0.0, 0.8)
+    goal = distance_m * np.cos(bearing), distance_m * np.sin(bearing)
+    middle = np.array([0.0, 0.0, phi, 0.0, *goal, heading, 0.0, float(rng.integers(2))])
+    widths = np.array([0.3, 0.3, 0.6, 0.3, 0.3, 0.3, 0.6, 0.3, 0.0]) * rng.choice([0.0, 1e-4, 0.05, 1.0], 9)
+    check_features("straight-drive", middle - widths / 2, middle + widths / 2, rng)
 
 
 @settings(max_examples=150, deadline=None)

@@ -28,7 +28,7 @@ BEFORE, AFTER, BASELINE = "before", "after", "baseline"
 MIN_SUCCESS_PCT, MAX_SLOWER_PCT = 98.0, 8.0
 REMARKS = (
     "before: the same controllers, nothing is predicted to fail. after: learned success, asserted subgoals. baseline: "
-    "the same controllers on ways around the believed objects, from a graph of poses and arcs.",
+    "the same controllers on ways around the believed objects, from a graph of poses and of the ways that they drive.",
     "success: the goal is achieved, and nothing is touched on the way. needless: a subgoal was asserted, and before "
     "succeeds. slower: mean over starts, against before, where both succeed: all such starts, with a subgoal or "
     "without; needless slower: those with a needless subgoal; baseline needless slower: of the baseline from the same "

@@ -87,12 +87,13 @@ def objects_of(context: ActionContext, belief: Belief) -> Array:
     objects = np.zeros((len(rows), len(SUFFIXES)))
     objects[:, HIGH] = np.inf
     for column, suffix in enumerate(suffixes):
-        objects[:, SUFFIXES.index(suffix)] = rows[:, column]
+        if suffix in SUFFIXES:
+            objects[:, SUFFIXES.index(suffix)] = rows[:, column]
     return objects
 
 
 HAND = tuple(Circle(ahead_m, 0.0, 0.075, 1.03) for ahead_m in (0.40, 0.535))  # of the kitchen robot's folded arm
-GEOMETRIES: Mapping[str, Geometry] = {  # by domain; chosen on training starts
+GEOMETRIES: Mapping[str, Geometry] = {  # by domain; see docs/evaluating.md
     # half its width; the margins are for the rail in bends, too
     "soccer": Geometry((Circle(0.0, 0.0, 0.15),), (0.12, 0.08, 0.05), 0.12, 0.5, 0.6, 1.4, 0.6),
     "kitchen": Geometry((Circle(0.0, 0.0, 0.265), *HAND), (0.08, 0.05, 0.02), 0.06, 0.5, 0.45, 0.6, 0.9),

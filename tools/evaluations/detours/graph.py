@@ -96,6 +96,6 @@ class DetourGraph:
     def _leg(self, start: Pose2, goal: Pose2, goal_mps: float) -> float | None:
         """Approximate seconds from start to goal; None if the robot touches something on the way."""
         leg = self.legs.between(start, goal, goal_mps)
-        if self.geometry.gap_m(leg.poses, self.objects) <= self.margin_m:
+        if not self.geometry.gap_m(leg.poses, self.objects) > self.margin_m:  # NaN is not clear
             return None
         return leg.length_m / self.geometry.mean_mps + leg.turned_rad / self.geometry.turn_radps

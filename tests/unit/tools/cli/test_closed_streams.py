@@ -56,6 +56,14 @@ def test_a_command_that_only_prints_fails_where_standard_output_is_closed(argume
     assert capsys.readouterr().err == f"tailor {arguments[0]}: standard output is closed, expected an open one\n"
 
 
+def test_a_picture_that_a_command_draws_besides_needs_no_standard_output(tmp_path):
+    run, picture = RUN.replace("approach", "waypoints"), tmp_path / "why.png"
+    command = ["sh", "-c", 'exec "$0" -P -m tailor.tools.main why "$1" -o "$2" >&-', sys.executable, run, str(picture)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, f"{picture}\n")
+    assert picture.stat().st_size > 1000
+
+
 @pytest.mark.parametrize(
     ("output", "expected"),
     [(">&-", "standard output is closed, expected an open one"), (">/dev/full", "No space left on device")],

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,17 +9,11 @@ import pytest
 from tailor.executive import domains
 from tailor.executive.actions.arrival_path import ArrivalPath
 from tailor.executive.belief.angles import difference
-from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.soccer import robot
-from tailor.executive.interfaces.action import Control
-from tailor.executive.interfaces.action_context import ActionContext
-from tailor.schemas.messages.soccer import OpponentsTruth
-from tailor.tools.evaluations.detours.controller import DetourController, with_detours
+from tailor.executive.interfaces.action_context import ActionContext, ContextColumn
 from tailor.tools.evaluations.detours.geometry import GEOMETRIES, objects_of
 from tailor.tools.evaluations.detours.graph import DetourGraph
 from tailor.tools.evaluations.detours.legs import Legs, legs_of
-from tailor.tools.lockstep.action_run import new_body
-from tailor.tools.lockstep.readings import newest
 
 SOCCER, KITCHEN = GEOMETRIES["soccer"], GEOMETRIES["kitchen"]
 BENDS = Legs(ArrivalPath(robot.V_MAX_MPS), lambda start, goal: None)
@@ -63,47 +56,16 @@ def test_a_goal_inside_a_ring_of_discs_has_no_way():
     assert around(*ring) is None
 
 
-@pytest.mark.parametrize("detours", [False, True])
-def test_controllers_with_detours_touch_no_opponent_in_the_way(detours):
-    domain = domains.load("soccer")
-    domain = with_detours(domain, "soccer", "opponents") if detours else domain
-    body, belief, state, touched = new_body(domain), domain.initial_belief(), None, False
-    body.reset(np.random.default_rng(1), {"x": -1.5, "opponent1_x": 0.0, "opponent1_y": 0.05, "opponent1_radius": 0.2})
-    control = None
-    for tick in range(1, 200):
-        readings = body.advance(10**8)
-        touched |= any(r.message.touched for r in readings if isinstance(r.message, OpponentsTruth))
-        belief = domain.update(belief, tick * 10**8, newest(readings), (0.0, 0.0))
-        if tick > 15:
-            arguments = np.array([-1.5, 0, 0, 0, *GOAL, 0.0])
-            control = domain.actions["goToPose"].controller(state, tick * 10**8, belief, arguments)
-            state = control.state
-            if control.outcome != "running":
-                break
-            body.command(control.command)
-    assert touched is not detours
-    if detours:
-        assert control.outcome == "done"
-        assert math.dist((body.ground_truth().x, body.ground_truth().y), GOAL[:2]) < 0.2
+def test_between_two_walls_two_poses_are_needed():
+    walls = [(-0.4, y, 0.2) for y in (-0.9, -0.5, -0.1, 0.3)] + [(0.6, y, 0.2) for y in (-0.3, 0.1, 0.5, 0.9)]
+    assert len(around(*walls)) == 3
 
 
-@pytest.mark.parametrize("opponents", [(), ((0.5, 0.0, 0.2),)])
-def test_a_leg_begins_where_the_robot_is(opponents):
-    """Controllers may decide by the start in their arguments; that of the action is long passed."""
-    given = []
-
-    def go(state, now_ns, belief, arguments):
-        given.append(arguments[:3].tolist())
-        return Control(state, (0.0, 0.0))
-
-    domain = domains.load("soccer")
-    context = ActionContext(
-        domain.actions["goToPose"].context.columns, lambda _: np.array(opponents).reshape(-1, 3), "", ""
-    )
-    detour = DetourController(go, go, (BENDS, BENDS), SOCCER, context, FIELD)
-    belief = replace(domain.initial_belief(), pose=Pose(-0.7, 0.1, 0.2, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4)))
-    detour(None, 0, belief, np.array([*START, 0.0, *GOAL, 0.0]))
-    assert given == [[-0.7, 0.1, 0.2]]
+def test_what_takes_less_turning_is_quicker():
+    legs = legs_of(domains.load("kitchen").actions["goToPose"].controller, seen=False)
+    graph = DetourGraph(legs, KITCHEN, np.zeros((0, 7)), FIELD, KITCHEN.margins_m[0])
+    ahead, about = (0.8, 0.0, 0.0), (0.8, 0.0, -math.pi)
+    assert graph.quickest((0.0, 0.0, 0.0), [about, ahead], 0.0) == (ahead,)
 
 
 def kitchen_objects():
@@ -120,7 +82,8 @@ def test_the_kitchens_geometry_knows_all_that_stands_there():
 
 def test_opponents_are_cylinders_over_which_nothing_passes():
     columns = domains.load("soccer").actions["goToPose"].context.columns
-    (row,) = objects_of(ActionContext(columns, lambda _: np.array([[1.0, 2.0, 0.2]]), "", ""), None)
+    columns = (*columns, ContextColumn("opponent_speed", "m/s", 0.0, 1.0))  # of which this knows nothing
+    (row,) = objects_of(ActionContext(columns, lambda _: np.array([[1.0, 2.0, 0.2, 0.7]]), "", ""), None)
     assert row.tolist() == [1.0, 2.0, 0.0, 0.0, 0.0, 0.2, math.inf]
 
 
@@ -175,12 +138,3 @@ def test_of_free_headings_one_is_taken_at_which_the_hand_touches_nothing():
     assert graph.quickest(start, [towards], 0.0) is None, "the hand would be in the cupboard"
     aside = (*CUPBOARD, math.pi)
     assert graph.quickest(start, [towards, aside], 0.0)[-1] == aside
-
-
-@pytest.mark.parametrize(("scenario", "kept"), [("to-cupboard", False), ("one-cup", True)])
-def test_a_heading_is_chosen_where_the_scenario_leaves_it_open(scenario, kept):
-    kitchen = with_detours(domains.load("kitchen"), "kitchen", scenario)
-    belief = replace(kitchen.initial_belief(), pose=Pose(2.2, 0.6, -math.pi / 2, (1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4)))
-    arguments = np.array([2.2, 0.6, -math.pi / 2, 0.0, *CUPBOARD, math.pi / 2, 0.0, 0.0])
-    poses = kitchen.actions["goToPose"].controller(None, 0, belief, arguments).state.poses
-    assert (poses[-1][2] == math.pi / 2) == kept
