@@ -53,7 +53,8 @@ class Field {
     this.path = this.pieces.flat();
     this.segments = this.pieces.flatMap(segmentsOf);
     for (const segment of this.segments) segment.element = svg("path", { d: this.way(segment.points) });
-    const ghosts = this.run.source() === "truth" ? this.run.pieces("believed", from, to) : [];
+    const known = this.run.nextAction(from); // before that the executive may still be looking for where the robot is
+    const ghosts = this.run.source() === "truth" ? this.run.pieces("believed", known, to) : [];
     this.still.replaceChildren(
       ...this.segments.map((s) => s.element),
       svg("path", { class: "ghost", d: this.lines(ghosts, (p) => [p.x, p.y]) }),

@@ -101,7 +101,7 @@ class Run {
     return begins.map((begin, i) => this.all(source).slice(before(begin), ends[i]));
   }
 
-  /** Time of the next action: by then the executive believes where a robot is that has started anew. */
+  /** Time of the next action: by then the executive believes where a robot is that has started, or started anew. */
   nextAction(at) {
     const rows = this.all("action").slice(this.count("action", at - 1e-9));
     return rows.find((row) => row.index >= 0)?.at ?? Infinity;

@@ -43,11 +43,11 @@ const element = () => ({ setAttribute(name, value) { this[name] = value; }, appe
 globalThis.document = { createElement: element, createElementNS: () => (made.push(element()), made.at(-1)) };
 const run = new Run();
 run.add([0, "outline truth ball", {robots: false, closed: true, onRobot: false, points: [[0, 0]], colour: "red"}]);
-run.add([0, "action", {index: 0, action: "go"}]);
+run.add([0.5, "action", {index: 0, action: "go"}]);
 run.add([2, "action", {index: -1, action: ""}]);
 run.add([3, "restart", {}]);
 run.add([5, "action", {index: 1, action: "go"}]);
-const truth = [0, 1, 2, 30, 30, 31, 32], believed = [0, 1, 2, 2, 30, 31, 32];
+const truth = [0, 1, 2, 30, 30, 31, 32], believed = [-7, 1, 2, 2, 30, 31, 32];
 truth.forEach((x, at) => {
   const index = at < 2 ? 0 : at < 5 ? -1 : 1;
   run.add([at, "truth", {x, y: 0, phi: null, index, places: {ball: [x + 1, 0, 0]}}]);
@@ -88,9 +88,9 @@ def test_actions_whose_samples_a_live_page_has_forgotten_stand_where_they_were()
 
 @needs_node
 def test_no_line_leads_to_where_a_simulator_has_put_the_robot_at_a_restart() -> None:
-    """What is believed follows later: its line goes on with the next action."""
+    """What is believed follows later: its line begins with the first action, and goes on with the next one."""
     drawn = [[[float(x) for x, _ in map(str.split, piece.split("L"))] for piece in path] for path in printed(RESTART)]
     way, believed, ball = drawn[:-2], *drawn[-2:]
     assert way == [[[0, 1]], [[2]], [[30, 30]], [[31, 32]]]
-    assert believed == [[0, 1, 2], [31, 32]]
+    assert believed == [[1, 2], [31, 32]]
     assert ball == [[1, 2, 3], [31, 31, 32, 33]]
