@@ -9,6 +9,7 @@ import numpy as np
 
 from tailor.executive.interfaces.action_context import ActionContext
 from tailor.executive.interfaces.values import Array, Belief
+from tailor.models.features.kitchen.spaces import B21
 
 X, Y, PHI, LONG, WIDE, RADIUS, HIGH = range(7)  # of an object: place, direction, half sizes, radius around, height
 # the columns of a context that end so; others do not count
@@ -21,21 +22,18 @@ class Circle:
 
     Attributes:
       ahead_m: Of the robot's middle.
-      left_m: Of it.
       radius_m: Its size.
       bottom_m: Height of its lowest point: it passes over what is lower.
     """
 
     ahead_m: float
-    left_m: float
     radius_m: float
     bottom_m: float = 0.0
 
     def places(self, poses: Array) -> Array:
         """Where it is at poses of the robot, shape (n, 3); returns (n, 2)."""
         x, y, phi = poses.T
-        c, s = np.cos(phi), np.sin(phi)
-        return np.stack([x + c * self.ahead_m - s * self.left_m, y + s * self.ahead_m + c * self.left_m], axis=1)
+        return np.stack([x + np.cos(phi) * self.ahead_m, y + np.sin(phi) * self.ahead_m], axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +90,23 @@ def objects_of(context: ActionContext, belief: Belief) -> Array:
     return objects
 
 
-HAND = tuple(Circle(ahead_m, 0.0, 0.075, 1.03) for ahead_m in (0.40, 0.535))  # of the kitchen robot's folded arm
 GEOMETRIES: Mapping[str, Geometry] = {  # by domain; see docs/evaluating.md
-    # half its width; the margins are for the rail in bends, too
-    "soccer": Geometry((Circle(0.0, 0.0, 0.15),), (0.12, 0.08, 0.05), 0.12, 0.5, 0.6, 1.4, 0.6),
-    "kitchen": Geometry((Circle(0.0, 0.0, 0.265), *HAND), (0.08, 0.05, 0.02), 0.06, 0.5, 0.45, 0.6, 0.9),
+    "soccer": Geometry(
+        circles=(Circle(0.0, 0.15),),  # half its width; the margins are for the rail in bends, too
+        margins_m=(0.12, 0.08, 0.05),
+        spare_m=0.12,
+        passing_mps=0.5,
+        mean_mps=0.6,
+        turn_radps=1.4,
+        turn_first_m=0.6,
+    ),
+    "kitchen": Geometry(
+        circles=(Circle(0.0, B21.base_m), *(Circle(at, B21.hand_radius_m, B21.hand_bottom_m) for at in B21.hand_m)),
+        margins_m=(0.08, 0.05, 0.02),
+        spare_m=0.06,
+        passing_mps=0.5,
+        mean_mps=0.45,
+        turn_radps=0.6,
+        turn_first_m=0.9,
+    ),
 }
