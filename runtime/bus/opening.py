@@ -8,13 +8,13 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, suppre
 from functools import cache
 
 from tailor.runtime.bus import zenoh_config
-from tailor.runtime.bus.descriptors import CLIENT, ROUTER, require_descriptors
 from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
+from tailor.runtime.descriptors import CLIENT, ROUTER, require_descriptors
 from tailor.runtime.realtime import elevate_bus_threads, inherited_fifo
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.ros2.profiles import PLAIN, KeyProfile

@@ -7,12 +7,12 @@ import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from tailor.runtime.bus.descriptors import require_descriptors
 from tailor.runtime.bus.opening import open_local_router
 from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import check_endpoint
+from tailor.runtime.descriptors import require_descriptors
 from tailor.runtime.processes.child import tailor
 from tailor.runtime.processes.supervised import ProcessSpec
 from tailor.schemas.errors import UsageError

@@ -7,8 +7,8 @@ import subprocess
 
 import pytest
 
-from tailor.runtime.bus import descriptors
-from tailor.runtime.bus.descriptors import require_descriptors
+from tailor.runtime import descriptors
+from tailor.runtime.descriptors import require_descriptors
 from tailor.runtime.processes.child import tailor
 from tailor.schemas.errors import UsageError
 from tailor.tools.launch.hosting import free_endpoint
