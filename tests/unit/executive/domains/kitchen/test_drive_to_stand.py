@@ -8,7 +8,6 @@ import pytest
 
 pytest.importorskip("pybullet")
 
-from tailor.executive import domains
 from tailor.executive.belief.angles import difference
 from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.domains.kitchen.drive_to_stand import Far
@@ -23,16 +22,6 @@ NEAR = (
     ((1.7, -0.07, 0.17), (1.28, -0.15, -0.03)),
     ((0.41, 0.28, 1.92), (-0.01, 0.63, -0.51)),
 )
-
-
-@pytest.fixture(scope="module")
-def kitchen():
-    return domains.load("kitchen")
-
-
-@pytest.fixture(scope="module")
-def body(kitchen):
-    return action_run.new_body(kitchen)
 
 
 @pytest.mark.parametrize(("start", "goal"), NEAR)

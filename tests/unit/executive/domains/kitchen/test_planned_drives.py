@@ -5,7 +5,6 @@ import pytest
 
 pytest.importorskip("pybullet")
 
-from tailor.executive import domains
 from tailor.models.features.drive_clearance.poses import drive
 from tailor.models.features.features import NUMPY
 from tailor.models.features.kitchen.spaces import B21
@@ -17,16 +16,6 @@ DRIVES = (  # towards subgoals beside the stool, of which runs grazed it: they l
     (0.508, 0.657, -0.389, 0.0, 1.4, 1.112, 0.09, 0.35, 1.0),
     (0.346, 0.376, 0.636, 0.0, 1.394, 0.225, 0.285, 0.337, 1.0),
 )
-
-
-@pytest.fixture(scope="module")
-def kitchen():
-    return domains.load("kitchen")
-
-
-@pytest.fixture(scope="module")
-def body(kitchen):
-    return action_run.new_body(kitchen)
 
 
 def planned(arguments):
