@@ -142,6 +142,31 @@ def test_the_subgoal_shows_choice_greedy_and_alternatives(browser: Browser, socc
     assert count(browser, "#choice figure") == 1
 
 
+def test_where_nothing_is_free_a_button_leads_to_the_last_choice(browser: Browser, soccer: str) -> None:
+    button = "#choice .empty button"
+    opened(browser, soccer)
+    assert "No parameter was free" in text(browser, "#choice .empty")
+    decided_s = float(text(browser, button).removesuffix(" s"))
+    browser.value(f"document.querySelector({button!r}).click()")
+    browser.frame()
+    assert at(browser) == pytest.approx(decided_s, abs=0.01)
+    assert (count(browser, button), count(browser, "#choice figure")) == (0, 3)
+
+
+def test_no_wall_nor_robot_covers_the_numbers_of_the_scene(browser: Browser, tmp_path: Path) -> None:
+    run = ROOT / "tests" / "data" / "golden" / "soccer-approach.mcap"
+    opened(browser, written(tmp_path / "soccer.html", recorded_events(run, RunTimeline())))
+    is_above = "(e) => shapes.every((s) => s.compareDocumentPosition(e) === Node.DOCUMENT_POSITION_FOLLOWING)"
+    found = f"""(() => {{
+      const shapes = [...document.querySelectorAll('#scene .backdrop, #scene .robot')];
+      const numbers = [...document.querySelectorAll('#scene .numbers text')];
+      return [shapes.length, numbers.length, numbers.filter({is_above}).length];
+    }})()"""
+    shapes, numbers, above = browser.value(found)
+    assert shapes > 1
+    assert above == numbers >= 4
+
+
 def test_the_plan_shows_what_runs_what_is_done_and_what_links(browser: Browser, soccer: str) -> None:
     opened(browser, soccer, 4.0)
     assert text(browser, "#plan .running") == "approachball pos1 pos2"
@@ -233,7 +258,7 @@ def test_a_drawing_below_a_heading_of_three_lines_keeps_its_numbers(browser: Bro
     browser.value("document.querySelector('#scene small').append(' an action'.repeat(14))")
     browser.frame()
     bottom = "document.querySelector('#scene{}').getBoundingClientRect().bottom"
-    all_bottoms = "[...document.querySelectorAll('#scene .grid ~ text')].map((e) => e.getBoundingClientRect().bottom)"
+    all_bottoms = "[...document.querySelectorAll('#scene .numbers text')].map((e) => e.getBoundingClientRect().bottom)"
     assert browser.value("document.querySelector('#scene h2').offsetHeight") > 50, "three lines"
     lowest = max(browser.value(all_bottoms))
     assert lowest < browser.value(bottom.format(" .body")) <= browser.value(bottom.format(""))

@@ -52,7 +52,7 @@ def test_runs_side_by_side_move_in_step(browser: Browser, runs: str) -> None:
     browser.wait(f"{FRAMES_AT}[0] > {first} + 0.9")
     assert browser.value(FRAMES_AT) == pytest.approx([first + 1, second + 1])
     inside = "document.querySelectorAll('iframe')[1].contentDocument"
-    words = f"[...{inside}.querySelectorAll('#scene .grid ~ text')].map((e) => e.getBoundingClientRect().height)"
+    words = f"[...{inside}.querySelectorAll('#scene .numbers text')].map((e) => e.getBoundingClientRect().height)"
     assert browser.value(f"Math.min(...{words})") > 9, "legible, though the panel is wider than the drawing"
     browser.value(f"{inside}.dispatchEvent(new KeyboardEvent('keydown', {{key: 'Home'}}))")
     browser.wait(f"{AT} < 0.01")

@@ -1,9 +1,10 @@
 // The chosen values of the free parameters, the greedy ones, and the predictions for their alternatives.
 
 class ChoicePanel {
-  constructor(run, target) {
+  constructor(run, target, player) {
     this.run = run;
     this.panel = target;
+    this.player = player;
     this.picked = null; // "place quantity" of the parameter whose alternatives are shown
     this.drawn = "";
   }
@@ -179,9 +180,22 @@ class ChoicePanel {
       table(["action", "predicted", "spread"], durations),
       rows.length
         ? table(["free parameter", "chosen", "range"], rows)
-        : html("p", { class: "empty", text: "No parameter was free." }),
+        : html("p", { class: "empty" }, "No parameter was free. ", ...this.lastChoice(subgoals.at)),
     ];
   }
+
+  /** The way back to the last decision with something to choose: a run that has ended shows its last one, mostly fixed. */
+  lastChoice(at) {
+    const last = this.run.between("subgoals", this.run.episode(at)[0], at).findLast(hasFree);
+    if (!last) return [];
+    const go = { type: "button", onclick: () => this.player.go(last.at) };
+    return ["The last choice: ", html("button", go, seconds(last.at))];
+  }
+}
+
+/** Whether a decision chose the value of a parameter. */
+function hasFree(subgoals) {
+  return subgoals.actions.some((action) => action.parameters.some((p) => !p.bound));
 }
 
 /** What was paid for what, in words: the action that takes most longer than by greedy values, and that which takes most less. */

@@ -39,8 +39,8 @@ class Field {
       svg("g", {}, ...this.gridLines(width, height)),
       this.still,
     );
-    const units = { class: "halo", x: width - 4, y: 12, "text-anchor": "end", text: this.headed ? "x, y in m" : "m" };
-    const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving, svg("text", units));
+    const words = svg("g", { class: "numbers" }, ...this.numbers(width, height)); // last: walls would cover them
+    const above = svg("svg", { viewBox: box, class: "above", "aria-hidden": "true" }, this.moving, words);
     this.layers.replaceChildren(below, above);
     this.panel.title.textContent = "Scene";
     this.panel.note.replaceChildren(this.legend());
@@ -124,21 +124,31 @@ class Field {
   }
 
   gridLines(width, height) {
+    const { xs, ys } = this.axes(width);
+    const vertical = xs.map(([, px]) => svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height }));
+    return [...vertical, ...ys.map(([, py]) => svg("line", { class: "grid", x1: 0, x2: width, y1: py, y2: py }))];
+  }
+
+  /** The numbers of both axes, and their unit. */
+  numbers(width, height) {
+    const { xs, ys } = this.axes(width);
+    const inside = xs.filter(([, px]) => px >= 16 && px <= width - 16); // others would lie on those of y, or be cut
+    const number = (x, y, value) => svg("text", { class: "halo", x, y, text: String(value) });
+    const unit = { class: "halo", x: width - 4, y: 12, "text-anchor": "end", text: this.headed ? "x, y in m" : "m" };
+    return [
+      ...inside.map(([x, px]) => number(px + 3, height - 4, x)),
+      ...ys.map(([y, py]) => number(3, py - 3, y)),
+      svg("text", unit),
+    ];
+  }
+
+  /** Round numbers of both axes with their pixels: [[number, pixel]]. */
+  axes(width) {
     const [left, right, bottom, top] = this.map.box;
-    const vertical = atLeastTwo(left, right, width / 95).flatMap((x) => {
-      const [px] = this.map(x, 0);
-      const line = svg("line", { class: "grid", x1: px, x2: px, y1: 0, y2: height });
-      if (px < 16 || px > width - 16) return [line]; // a number there would lie on those of y, or be cut
-      return [line, svg("text", { x: px + 3, y: height - 4, text: String(x) })];
-    });
-    const horizontal = atLeastTwo(bottom, top, width / 125).flatMap((y) => {
-      const [, py] = this.map(0, y);
-      return [
-        svg("line", { class: "grid", x1: 0, x2: width, y1: py, y2: py }),
-        svg("text", { x: 3, y: py - 3, text: y === 0 ? "0" : String(y) }),
-      ];
-    });
-    return [...vertical, ...horizontal];
+    return {
+      xs: atLeastTwo(left, right, width / 95).map((x) => [x, this.map(x, 0)[0]]),
+      ys: atLeastTwo(bottom, top, width / 125).map((y) => [y, this.map(0, y)[1]]),
+    };
   }
 
   movingParts(at) {

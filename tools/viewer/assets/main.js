@@ -12,7 +12,7 @@ const player = new Player(run, given.live);
 const timeline = new Timeline(run, panel("timeline"), player);
 const views = [
   new Heading(run, given.title, liveness),
-  new ChoicePanel(run, panel("choice")),
+  new ChoicePanel(run, panel("choice"), player),
   new PlanGraph(run, panel("plan")),
   timeline,
 ];

@@ -9,6 +9,8 @@ const KEEP_EVENTS = 2000;
 const FORGET_EVERY_S = 60;
 const PASSING = new Set(["tick", "belief", ...SOURCES, "why"]);
 const PASSING_STARTS = ["series ", "outline "];
+const JUMP_M = 0.5; // two places so far apart,
+const FASTEST_MPS = 3; // and farther than a robot drives meanwhile, are no path
 
 class Run {
   constructor() {
@@ -93,6 +95,11 @@ class Run {
 
   /** Samples of a source of the pose between two times, in pieces: a simulator that starts anew begins elsewhere. */
   pieces(source, from, to) {
+    return this.betweenRestarts(source, from, to).flatMap(unbroken);
+  }
+
+  /** The same between the restarts of a simulator. */
+  betweenRestarts(source, from, to) {
     const restarts = this.between("restart", from, to).map((row) => row.at);
     if (restarts.length === 0) return [this.between(source, from, to)];
     const before = (at) => this.count(source, at - 1e-9);
@@ -178,4 +185,15 @@ class Run {
 /** The colour class of an action by its place in the run. */
 function colour(index) {
   return index < 0 ? "idle" : `c${index % 6}`;
+}
+
+/** Samples of a path in pieces: one that was reset or carried off, or believes to be elsewhere, has not driven there. */
+function unbroken(samples) {
+  const broken = (p, q) => Math.hypot(q.x - p.x, q.y - p.y) > JUMP_M + FASTEST_MPS * (q.at - p.at);
+  const pieces = [];
+  for (const [i, sample] of samples.entries()) {
+    if (i === 0 || broken(samples[i - 1], sample)) pieces.push([]);
+    pieces[pieces.length - 1].push(sample);
+  }
+  return pieces;
 }

@@ -59,6 +59,12 @@ field.layEpisode(...run.episode(0));
 const paths = made.map((each) => each.d).filter((d) => d && !d.endsWith("Z"));
 console.log(JSON.stringify(paths.map((path) => path.split("M").slice(1))));
 """
+CARRIED = """
+const run = new Run();
+[0, 0.9, 1.8, 8, 8.9, 8.9].forEach((x, i) => run.add([0.3 * i, "believed", {x, y: 0, phi: 0}]));
+run.add([60, "believed", {x: 12, y: 0, phi: 0}]);
+console.log(JSON.stringify(run.pieces("believed", 0, Infinity).map((piece) => piece.map((p) => p.x))));
+"""
 needs_node = pytest.mark.skipif(NODE is None, reason="no Node.js here: install Debian's package nodejs")
 
 
@@ -94,3 +100,9 @@ def test_no_line_leads_to_where_a_simulator_has_put_the_robot_at_a_restart() -> 
     assert way == [[[0, 1]], [[2]], [[30, 30]], [[31, 32]]]
     assert believed == [[1, 2], [31, 32]]
     assert ball == [[1, 2, 3], [31, 31, 32, 33]]
+
+
+@needs_node
+def test_no_line_leads_to_where_no_robot_can_have_driven_meanwhile() -> None:
+    """Such as after `sim/reset`, or where a robot was carried."""
+    assert printed(CARRIED) == [[0, 0.9, 1.8], [8, 8.9, 8.9, 12]]
