@@ -1,6 +1,6 @@
 // Everything over one axis of time: actions, events, speed, tick timing, granted checks; drag to move, wheel to zoom.
 
-const MARGINS = { left: 74, right: 54 }; // of the lanes, for words on both sides
+const MARGINS = { left: 80, right: 54 }; // of the lanes, for words on both sides
 
 class Timeline {
   constructor(run, target, player) {
