@@ -187,7 +187,9 @@ def test_the_timeline_shows_predicted_against_actual_and_every_tick(browser: Bro
 
 
 @pytest.mark.parametrize(
-    "size", [(375, 812), (390, 844), (1280, 800), (1280, 1400), (1440, 900), (1920, 1080)], ids="{0[0]}x{0[1]}".format
+    "size",
+    [(375, 812), (390, 844), (1100, 900), (1280, 800), (1280, 1400), (1440, 900), (1920, 1080)],
+    ids="{0[0]}x{0[1]}".format,
 )
 def test_the_page_fits_a_phone_and_screens_with_its_timeline_above_the_fold(
     browser: Browser, soccer: str, size
