@@ -9,13 +9,16 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from tailor.executive.actions.dubins import Pose2
 from tailor.executive.actions.go_to_pose import GoToPose
 from tailor.executive.actions.planar import PHI, PHIG, VG, XG, YG, PlanarBelief, X, Y
 from tailor.executive.belief.angles import difference
+from tailor.executive.belief.planar_ekf import Pose
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
 
 SEEN = VG + 1  # argument: 1 where the stool has been seen, else 0
+FACING_RAD = 0.8  # a robot that faces farther aside of its goal's heading is still bending
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +33,7 @@ class Near:
     """Controller state on the way to a near goal; `side` is 1 for driving ahead, -1 for backing off."""
 
     phase: Literal["face", "drive", "align"]
-    side: int
+    side: Literal[-1, 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,7 @@ class DriveToStand:
     back_m: float = 2.0  # so far it backs off where the stool has been seen: from any stand to the open middle,
     back_rad: float = 2.2  # if it turns less than this in all: a bend takes 1 to 6 s longer then
     off_rad: float = 0.7  # it begins to drive when it faces the goal within this, the less the nearer it is
+    miss_m: float = 0.30  # a bend that ends beside its goal, so near, has missed it
     steer_m: float = 0.15  # from here on it steers softer
     there_m: float = 0.05  # so near its goal it only turns
     reached_m: float = 0.02  # along the direction of driving
@@ -54,27 +58,30 @@ class DriveToStand:
     still_mps: float = 0.10
     still_radps: float = 0.4
 
-    def is_near(self, distance: float, bearing: float, start: float, end: float, seen: bool) -> bool:
-        """Whether it drives straight to a goal.
+    def side(self, start: Pose2, goal: Pose2, seen: bool) -> Literal[-1, 1] | None:
+        """1 where it drives straight ahead to a goal, -1 where it backs off, None where it bends into it.
 
         Args:
-          distance: From the robot, m.
-          bearing: Of the goal as seen from there, rad, in the frame of the headings.
-          start: Heading of the robot.
-          end: Heading at the goal.
+          start: Pose of the robot.
+          goal: Pose to drive to.
           seen: Whether the stool has been seen.
         """
-        backs_off = seen and _turning(bearing + math.pi, start, end) < self.back_rad
-        return distance < (self.back_m if backs_off else self.near_m)
+        distance, bearing = _sight(*start[:2], *goal[:2])
+        backs_off = seen and _turning(bearing + math.pi, start, goal) < self.back_rad
+        if distance >= (self.back_m if backs_off else self.near_m):
+            return None
+        return _side(start, goal)
 
     def __call__(self, state: Any, now_ns: int, belief: PlanarBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; the command is (v m/s, omega rad/s)."""
+        x, y, phi, vg = arguments[[XG, YG, PHIG, VG]].tolist()
+        pose = belief.pose
         state = state or self._begun(arguments)
+        if isinstance(state, Far) and self._has_missed(pose, (x, y, phi)):
+            state = Near("face", _side((pose.x, pose.y, pose.phi), (x, y, phi)))
         if isinstance(state, Far):
             control = self.far(state.inner, now_ns, belief, arguments)
             return Control(Far(control.state), control.command, control.outcome, control.detail)
-        x, y, phi, vg = arguments[[XG, YG, PHIG, VG]].tolist()
-        pose = belief.pose
         distance, bearing = _sight(pose.x, pose.y, x, y)
         off = difference(bearing if state.side > 0 else bearing + math.pi, pose.phi)
         passes = vg > 0.0 and state == Near("drive", 1) and abs(difference(phi, pose.phi)) < self.far.heading_rad
@@ -90,10 +97,15 @@ class DriveToStand:
     def _begun(self, arguments: Array) -> Far | Near:
         """How it drives, by where that was decided: as predicted, although the robot has moved a little since."""
         x, y, phi, xg, yg, phig, seen = arguments[[X, Y, PHI, XG, YG, PHIG, SEEN]].tolist()
-        distance, bearing = _sight(x, y, xg, yg)
-        if self.is_near(distance, bearing, phi, phig, seen >= 0.5):
-            return Near("face", _side(bearing, phi, phig))
-        return Far(None)
+        side = self.side((x, y, phi), (xg, yg, phig), seen >= 0.5)
+        return Far(None) if side is None else Near("face", side)
+
+    def _has_missed(self, pose: Pose, goal: Pose2) -> bool:
+        """Whether a bend has led beside or past its goal. Another one would be a loop, mostly against a table."""
+        x, y, phi = goal
+        distance, bearing = _sight(x, y, pose.x, pose.y)
+        is_past = distance * math.cos(bearing - phi) > -self.reached_m
+        return is_past and self.far.near_m < distance < self.miss_m and abs(difference(phi, pose.phi)) < FACING_RAD
 
     def _next(self, state: Near, distance: float, off: float) -> Near:
         """The phase now, where the goal is `off` radians left of the direction of driving."""
@@ -129,11 +141,12 @@ def _sight(x: float, y: float, xg: float, yg: float) -> tuple[float, float]:
     return math.hypot(xg - x, yg - y), math.atan2(yg - y, xg - x)
 
 
-def _side(bearing: float, start: float, end: float) -> int:
-    """1 to drive ahead, -1 to back off: whichever needs less turning from the start's heading to the end's."""
-    return 1 if _turning(bearing, start, end) <= _turning(bearing + math.pi, start, end) else -1
+def _side(start: Pose2, goal: Pose2) -> Literal[-1, 1]:
+    """1 to drive ahead, -1 to back off: whichever needs less turning from the start's heading to the goal's."""
+    _, bearing = _sight(*start[:2], *goal[:2])
+    return 1 if _turning(bearing, start, goal) <= _turning(bearing + math.pi, start, goal) else -1
 
 
-def _turning(heading: float, start: float, end: float) -> float:
+def _turning(heading: float, start: Pose2, goal: Pose2) -> float:
     """Angle that a robot turns in all which drives with this heading."""
-    return abs(difference(heading, start)) + abs(difference(end, heading))
+    return abs(difference(heading, start[2])) + abs(difference(goal[2], heading))

@@ -95,10 +95,8 @@ def legs_of(controller: Any, seen: bool) -> Legs:
         return Legs(controller.ways, lambda start, goal: None)
 
     def straight(start: Pose2, goal: Pose2) -> float | None:
-        distance, bearing = math.dist(start[:2], goal[:2]), math.atan2(goal[1] - start[1], goal[0] - start[0])
-        if not controller.is_near(distance, bearing, start[2], goal[2], seen):
-            return None
-        headings = (bearing, bearing + math.pi)
-        return min(headings, key=lambda each: abs(difference(each, start[2])) + abs(difference(goal[2], each)))
+        side = controller.side(start, goal, seen)
+        bearing = math.atan2(goal[1] - start[1], goal[0] - start[0])
+        return None if side is None else bearing if side > 0 else bearing + math.pi
 
     return Legs(controller.far.ways, straight)

@@ -41,8 +41,8 @@ def _way(controller: DriveToStand, arguments: Array) -> Array:
     """Places on the planned way, shape (POINTS, 2)."""
     start, goal = arguments[[X, Y]], arguments[[XG, YG]]
     dx, dy = (start - goal).tolist()
-    phi, phig, seen = arguments[[PHI, PHIG, SEEN]].tolist()
-    if controller.is_near(math.hypot(dx, dy), math.atan2(-dy, -dx), phi, phig, bool(seen)):
+    x, y, phi, xg, yg, phig, seen = arguments[[X, Y, PHI, XG, YG, PHIG, SEEN]].tolist()
+    if controller.side((x, y, phi), (xg, yg, phig), bool(seen)) is not None:
         straight: Array = start + np.linspace(0.0, 1.0, POINTS)[:, None] * (goal - start)
         return straight
     c, s = math.cos(phig), math.sin(phig)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from tailor.executive import domains
-from tailor.executive.domains.kitchen import drive_to_stand
 from tailor.models.features.drive_clearance import way as way_module
 from tailor.models.features.drive_clearance.beside_box import beside_box
 from tailor.models.features.drive_clearance.poses import drive
@@ -47,7 +46,7 @@ def stool_seen(rows):
 def drives_straight(controller, rows):
     """Whether the controller drives straight, of each row."""
     return [
-        controller.is_near(math.hypot(xg - x, yg - y), math.atan2(yg - y, xg - x), phi, phig, bool(stool))
+        controller.side((x, y, phi), (xg, yg, phig), bool(stool)) is not None
         for (x, y, phi, xg, yg, phig), stool in zip(rows.tolist(), stool_seen(rows)[:, 0], strict=True)
     ]
 
@@ -85,10 +84,10 @@ def test_near_ways_are_straight_and_backward_where_the_controller_backs_off(cont
     backward, far = 0, 0
     for k in np.flatnonzero(drives_straight(controller, rows)):
         x, y, phi, xg, yg, phig = rows[k]
-        distance, bearing = math.hypot(xg - x, yg - y), math.atan2(yg - y, xg - x)
+        distance = math.hypot(xg - x, yg - y)
         if distance < controller.there_m:
             continue
-        side = drive_to_stand._side(bearing, phi, phig)
+        side = controller.side((x, y, phi), (xg, yg, phig), bool(k % 2))
         far += distance > controller.near_m
         assert way.straight[0, k] == pytest.approx(side * distance, abs=1e-4)
         assert way.radius[0, k] == 0
