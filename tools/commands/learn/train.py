@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.card_lines import missed_failures
+from tailor.tools.learning.changed_episodes import changed_episodes_warning
 from tailor.tools.learning.recipe import MAX_SEED
 from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import (
@@ -24,7 +26,7 @@ from tailor.tools.learning.training_request import (
     DEFAULT_LEARNER,
     TrainingRequest,
 )
-from tailor.tools.learning.training_run import train_models
+from tailor.tools.learning.training_run import checked, train_models
 from tailor.tools.parallel.progress_lines import ProgressLines
 
 # named here so that --help loads no learning library
@@ -82,6 +84,9 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.seed,
         clearance_learner=arguments.clearance_learner,
     )
+    request = checked(request)
+    if warning := changed_episodes_warning(request):
+        print(f"warning: {warning}", file=sys.stderr)
     rows = _trained(request)
     if arguments.json:
         print(json.dumps(rows))

@@ -20,6 +20,7 @@ from tailor.models.episodes.sources import BESIDE_ONE, SELECTED, short_hashes
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
+from tailor.tools.cli.word_lists import abbreviated
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec, columns_of, draw
 
 Array = NDArray[np.float64]
@@ -30,6 +31,7 @@ MIN_STEPS, MAX_STEPS = 2, 400  # unless they had fewer or more of these steps
 NEAR = 0.01  # of a declared range: samples that near to its end stand for the end itself
 # entries of a manifest that may differ when a data set is resumed; `source_sha256` stands for the files
 COUNTS = ("episodes", "runs", "software", "source_files")
+NAMED = 3  # files that a message names
 _PART = re.compile(r"part-(\d+)-(\d+)\.parquet")  # of random episodes: from the first to before the second
 _RUNS = re.compile(r"runs-(\d+)-(\d+)\.done")  # the same of the executive's runs, beside the folders of their actions
 
@@ -112,6 +114,7 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
             f"{folder}: holds episodes already (expected another --out, or --resume to continue simulated runs)"
         )
     existing = read_manifest(folder)
+    _check_source(folder, manifest, existing)
     selected = any(key in manifest for key in SELECTED)  # among a fixed number, which does not grow
     for key, value in manifest.items():
         if (key not in COUNTS or (selected and key == "episodes")) and existing.get(key) != value:
@@ -120,6 +123,18 @@ def check_resumable(folder: Path, manifest: dict[str, Any], resume: bool) -> Non
         raise UsageError(
             f"{folder}: --episodes is {manifest['episodes']}, expected at least {existing['episodes']} "
             "as the folder was made for, to resume"
+        )
+
+
+def _check_source(folder: Path, manifest: Mapping[str, Any], existing: Mapping[str, Any]) -> None:
+    """Raise UsageError if a data set was simulated with another source of its robot than the one to gather now."""
+    before, today = existing.get("source_files") or {}, manifest.get("source_files", {})
+    if existing.get("source_sha256") != manifest.get("source_sha256") and before:
+        files = sorted(name for name in before.keys() | today.keys() if before.get(name) != today.get(name))
+        other = abbreviated(files, NAMED) or "source"
+        raise UsageError(
+            f"{folder}: was simulated with another {other}, expected today's to resume; "
+            "gather anew with another --out, or into an emptied folder"
         )
 
 
