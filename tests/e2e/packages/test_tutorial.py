@@ -11,7 +11,7 @@ PAGE = ROOT / "docs" / "new-robot.md"
 COMMANDS = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 # for time's sake; so few starts may prove nothing, which is exit code 1
 FEWER = {"--episodes 1000": "--episodes 120", "--episodes 40": "--episodes 3 || test $? = 1"}
-INSTALL = "pip install -e ."  # would download setuptools
+INSTALL = "pip install -e '.[test]'"  # would download setuptools
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("systems")]
 

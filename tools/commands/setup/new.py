@@ -14,7 +14,7 @@ examples:
   tailor new robot painter --kind arm --into ~/robots
 
 Then, in the new folder:
-  pip install -e .                         now every command knows the robot
+  pip install -e '.[test]'                 now every command knows the robot, and pytest tests it
   tailor gather courier && tailor train courier
   tailor up courier --once
 
@@ -42,5 +42,5 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"folder": str(folder), "files": count}))
         return 0
-    print(f"{folder}: {count} files. Next: cd {folder} && pip install -e . && tailor gather {name}")
+    print(f"{folder}: {count} files. Next: cd {folder} && pip install -e '.[test]' && tailor gather {name}")
     return 0

@@ -32,6 +32,15 @@ def test_a_package_has_every_part(kind: str) -> None:
 
 
 @KINDS
+def test_what_installs_a_new_robot_installs_the_pytest_that_its_readme_runs(kind: str) -> None:
+    """`tailor[all]` brings none: the pytest of another environment answered, which does not know `--tailor-domain`."""
+    files = rendered("cart", kind)
+    (pytest_,) = tomllib.loads(files["pyproject.toml"])["project"]["optional-dependencies"]["test"]
+    assert pytest_.startswith("pytest>=")
+    assert "pip install -e '.[test]'" in files["README.md"]
+
+
+@KINDS
 def test_no_placeholder_is_left(kind: str) -> None:
     assert [path for path, text in rendered("cart", kind).items() if "$" in path + text or "template" in path] == []
 
