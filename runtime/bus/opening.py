@@ -12,6 +12,7 @@ from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
+from tailor.runtime.bus.rights.router_faults import fault_of_router
 from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.descriptors import CLIENT, ROUTER, require_descriptors
@@ -168,6 +169,8 @@ def _no_session(endpoint: str, identity: Identity | None) -> UsageError:
         return UnreachableError(f"bus endpoint {endpoint}: no router responds; start one with `tailor bus`")
     if identity is not None and (fault := _fault_of_key(identity)):
         return UnfitKeyError(fault)
+    if identity is not None and (fault := fault_of_router(identity, host.strip("[]"), int(port), PROBE_S)):
+        return UnfitKeyError(f"bus endpoint {endpoint}: it opens no session here: {fault}")
     why = "the bus belongs to another user, or this one has no key for it (`tailor keys`)"
     return UsageError(f"bus endpoint {endpoint}: it opens no session here: {why}")
 

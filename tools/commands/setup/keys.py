@@ -88,6 +88,8 @@ def _new(arguments: argparse.Namespace) -> None:
     name, keys = check_name(arguments.name), Path(arguments.keys)
     if (name == ROUTER) == bool(arguments.role):
         raise UsageError(f"--role: expected one for every name, but none for '{ROUTER}'")
+    if name == ROUTER and not arguments.host:
+        raise UsageError("--host is missing, expected the names or addresses at which the others reach the router")
     if arguments.endpoint and not check_endpoint(arguments.endpoint).startswith("tls/"):
         raise UsageError(f"--for {arguments.endpoint}: a key opens no session there, expected tls/HOST:PORT")
     for host in arguments.host:
@@ -97,7 +99,8 @@ def _new(arguments: argparse.Namespace) -> None:
     check_unused(arguments.keys, name)
     folder, now = keys / name, utc_now()
     if folder.exists():
-        raise UsageError(f"{folder}: exists already, expected a new name")
+        other = "a new name" if name != ROUTER else "one folder for it: remove that to make it anew, for more hosts say"
+        raise UsageError(f"{folder}: exists already, expected {other}")
     try:
         authority = Authority.of(keys, now, MAX_DAYS)  # --days is not for it: no key outlasts what signed it
         authority.issue(folder, name, arguments.host, now, arguments.days)

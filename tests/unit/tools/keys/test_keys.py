@@ -157,6 +157,19 @@ def test_a_host_may_be_a_name_or_an_address(tmp_path, host):
     assert main(["keys", "new", "router", "--host", host, "--keys", str(tmp_path)]) == 0
 
 
+def test_a_router_that_no_machine_could_believe_is_not_made(tmp_path, capsys):
+    """Its key was made without a name; every other machine was then told that it has no key for the bus."""
+    words = ["keys", "new", "router", "--keys", str(tmp_path / "keys")]
+    assert main(words) == 2
+    assert capsys.readouterr().err.startswith(
+        "tailor keys: --host is missing, expected the names or addresses at which"
+    )
+    assert not (tmp_path / "keys").exists()
+    assert main([*words, "--host", "robot.local"]) == 0
+    assert main([*words, "--host", "10.0.0.5"]) == 2
+    assert "exists already, expected one folder for it: remove that to make it anew" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("name", ["authority.pem", AUTHORITY_KEY])
 def test_without_its_authority_no_key_is_made_and_no_second_authority(keys, capsys, name):
     """The documentation has people keep the authority's key elsewhere; a new one would part new keys from old ones."""
