@@ -27,7 +27,7 @@ from tailor.tools.hub.client import upload
 from tailor.tools.hub.fetching import fetched
 from tailor.tools.hub.folders import DATA_FILES, MODEL_FILES
 from tailor.tools.hub.place import Place
-from tailor.tools.learning.target_zoo import target_zoo
+from tailor.tools.learning.model_folders import target_zoo
 
 
 def push(write: Callable[[Path], None], place: Place, kind: str, public: bool) -> str:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
+from tailor.tools.learning.model_folders import target_zoo
 from tailor.tools.learning.recipe_file import recipe_path
-from tailor.tools.learning.target_zoo import target_zoo
 
 
 def remaking_advice(robot: str, zoo: Path | None) -> str:

@@ -14,10 +14,11 @@ from tailor.models.fitted_trees.linear_tree import LinearTree
 from tailor.models.rules.rule_text import duration_rules
 from tailor.models.training.learners import DURATION_LEARNERS, SUCCESS_LEARNERS, learner_name
 from tailor.tools.commands.learn import train
+from tailor.tools.learning.model_folders import target_zoo
 from tailor.tools.learning.recipe_file import read_recipe, recipe_path
-from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import DEFAULT_FAILURE_LEARNER, DEFAULT_LEARNER
 from tailor.tools.main import main
+from tests.support.robots.known_robot import known_robot
 
 
 def tree() -> LinearTree:
@@ -74,6 +75,38 @@ def test_list_and_show_are_readable_by_scripts(capsys) -> None:
     assert main(["models", "show", "agilo", "--json"]) == 0
     kinds = {card["kind"] for card in json.loads(capsys.readouterr().out)}
     assert {"duration", "clearance"} <= kinds
+
+
+def test_models_of_other_packages_are_listed_and_checked_with_those_that_ship(tmp_path: Path, capsys) -> None:
+    """Who had trained a robot of his own did not find it in the list, and could not name it beside one of ours."""
+    with known_robot("cart", "wheeled", tmp_path) as folder, known_robot("tram", "wheeled", tmp_path):
+        place = folder / "cart" / "models" / "cart" / "drive"
+        shutil.copytree(runtime.ZOO / "agilo" / "goToPose", place)
+        for card in place.glob("*.json"):
+            changed(card, robot="cart", action="drive")
+        assert main(["models", "list", "--json"]) == 1  # a card of another model: it is found, and read
+        printed = capsys.readouterr()
+        assert "agilo/goToPose/duration" in {row["model"] for row in json.loads(printed.out)}  # hindered by none of it
+        assert f"cart/drive/duration: {place}/duration" in printed.err
+        assert main(["models", "list", "cart"]) == 2
+        assert f"{place}" in capsys.readouterr().err
+        assert main(["models", "check", "--json"]) == 1
+        found = json.loads(capsys.readouterr().out)
+        assert {"agilo/goToPose/duration", "cart/drive/duration"} <= set(found["checked"])
+        assert {name.partition("/")[0] for name in found["failed"]} == {"cart"}  # and not the tram, which has none yet
+        assert main(["models", "check", "agilo/goToPose", "cart", "--json"]) == 1
+        assert {"agilo/goToPose/duration", "cart/drive/duration"} <= set(json.loads(capsys.readouterr().out)["checked"])
+        assert main(["models", "check", "tram"]) == 2
+        assert "tram" in capsys.readouterr().err
+
+
+def test_the_models_of_a_package_that_cannot_be_loaded_are_not_said_to_be_missing(tmp_path: Path, capsys) -> None:
+    with known_robot("cart", "wheeled", tmp_path) as folder:
+        (folder / "cart" / "__init__.py").write_text("import nosuchmodule\n")
+        assert main(["models", "list", "cart"]) == 2
+        assert "cart:SPEC: cannot be loaded: ModuleNotFoundError" in capsys.readouterr().err
+        assert main(["models", "list", "soccer"]) == 2
+        assert "(agilo is the robot of soccer)" in capsys.readouterr().err
 
 
 def copied(tmp_path: Path, action: str = "goToPose", place: str = "agilo/goToPose") -> Path:

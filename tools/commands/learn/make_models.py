@@ -16,8 +16,8 @@ from tailor.tools.cli.number_checks import processes
 from tailor.tools.learning.making.installing import install
 from tailor.tools.learning.making.making import Making
 from tailor.tools.learning.making.steps import check, make
+from tailor.tools.learning.model_folders import target_zoo
 from tailor.tools.learning.recipe_file import read_recipe, recipe_path
-from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.parallel.steps import Step, show
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from rich.console import Console
@@ -14,13 +16,13 @@ from tailor.models.cards.card import SUCCESS_KINDS, UNITS, Card
 from tailor.models.cards.card_shape import TEST_FIGURES
 from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.inference import OnnxModel
-from tailor.models.runtime import ZOO, load_model
+from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
-from tailor.schemas.installed import models_folder, robot_names
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.hub import sharing
 from tailor.tools.learning.card_lines import card_lines, missed_failures
+from tailor.tools.learning.model_folders import located
 
 EPILOG = """\
 examples:
@@ -37,7 +39,7 @@ examples:
   tailor models pull --data data/theirs --from USER/agilo-episodes
 
 MODEL is ROBOT/ACTION/KIND. KIND is duration (the default), duration_beside (beside objects), energy, success, or
-clearance (success beside an object). ROBOT alone stands for all its models; no MODEL stands for all models in the zoo.
+clearance (success beside an object). ROBOT alone stands for all its models, no MODEL for those of all robots.
 --of is for models of trees: a bag (durations of b21's arm) or a forest."""
 VERBS = ("list", "show", "rules", "plot", "check", "push", "pull")
 TAKEN_BY = {  # flag -> verbs; the others would ignore it
@@ -77,26 +79,50 @@ def run(arguments: argparse.Namespace) -> int:
     _check_flags(arguments)
     if arguments.verb in sharing.VERBS:
         return sharing.run(arguments)
-    named, arguments.zoo = arguments.zoo, arguments.zoo or _zoo_of(arguments.models)
-    names = [each for name in arguments.models for each in _full(name, arguments.zoo)] or _all(arguments.zoo)
+    found = located(arguments.models, arguments.zoo)
     if arguments.verb == "check":
-        return _check(names, arguments, named)
-    loaded = [load_model(name, arguments.zoo) for name in names]
-    _check_data(arguments.data, {model.card["action"] for model in loaded})
+        return _check(found, arguments)
+    loaded, unread = _loaded(found, whole=bool(arguments.models or arguments.zoo))
+    _check_data(arguments.data, {model.card["action"] for _, _, model in loaded})
     if arguments.verb == "list":
-        _list([model.card for model in loaded], arguments.json)
+        _list([model.card for _, _, model in loaded], arguments.json)
     elif arguments.verb == "show":
-        _show([model.card for model in loaded], arguments.json)
+        _show([model.card for _, _, model in loaded], arguments.json)
     elif arguments.verb == "rules":
-        for name, model in zip(names, loaded, strict=True):
-            print(_rules(model, name, arguments))
+        for zoo, name, model in loaded:
+            print(_rules(model, zoo / f"{name}.onnx", arguments))
     else:
-        from tailor.tools.figures.learned_models import pictures
+        _plot({name: model for _, name, model in loaded}, arguments)
+    for error in unread:
+        print(plain(error), file=sys.stderr)
+    return 1 if unread else 0
 
-        for name, model in zip(names, loaded, strict=True):
-            drawn = map(str, pictures.draw(model, arguments.data, arguments.out or OUT))
-            print("\n".join(drawn) or f"{name}: no picture without its episodes")
-    return 0
+
+def _loaded(found: Mapping[Path, list[str]], whole: bool) -> tuple[list[tuple[Path, str, OnnxModel]], list[str]]:
+    """Models with their folders and names, and errors of the others: one at fault hinders only those who name it.
+
+    Raises:
+      UsageError: One cannot be loaded, and the `whole` is demanded, or none can.
+    """
+    loaded, errors = [], []
+    for zoo, name in ((zoo, name) for zoo, names in found.items() for name in names):
+        try:
+            loaded.append((zoo, name, load_model(name, zoo)))
+        except UsageError as error:
+            if whole:
+                raise
+            errors.append(f"{name}: {error}")
+    if not loaded:
+        raise UsageError("; ".join(errors))
+    return loaded, errors
+
+
+def _plot(models: Mapping[str, OnnxModel], arguments: argparse.Namespace) -> None:
+    from tailor.tools.figures.learned_models import pictures
+
+    for name, model in models.items():
+        drawn = map(str, pictures.draw(model, arguments.data, arguments.out or OUT))
+        print("\n".join(drawn) or f"{name}: no picture without its episodes")
 
 
 def _check_flags(arguments: argparse.Namespace) -> None:
@@ -119,37 +145,11 @@ def _check_data(data: Path | None, actions: set[str]) -> None:
         raise UsageError(f"{data}: no data sets of these models, expected {expected} (`tailor gather` writes them)")
 
 
-def _rules(model: OnnxModel, name: str, arguments: argparse.Namespace) -> str:
+def _rules(model: OnnxModel, path: Path, arguments: argparse.Namespace) -> str:
     from tailor.tools.learning.model_rules import DISTILLED, rules, tree_number
 
     tree = tree_number(arguments.of) if arguments.of else DISTILLED if arguments.distilled else None
-    return rules(model, arguments.zoo / f"{name}.onnx", tree, arguments.data)
-
-
-def _zoo_of(names: list[str]) -> Path:
-    """Folder of the models of the first named robot; the one that ships if none is named or known."""
-    robot = names[0].split("/")[0] if names else ""
-    return models_folder(robot) if robot in robot_names() else ZOO
-
-
-def _full(name: str, zoo: Path) -> list[str]:
-    """Full names of the models that a name stands for: a robot for all its models, an action for its duration."""
-    if "/" not in name:
-        mine = [each for each in _all(zoo) if each.startswith(f"{name}/")]
-        if not mine:
-            robots = ", ".join(sorted({each.split("/")[0] for each in _all(zoo)}))
-            raise UsageError(f"'{name}' has no models in {zoo} (expected ROBOT/ACTION/KIND, or one of: {robots})")
-        return mine
-    return [name if name.count("/") != 1 else f"{name}/duration"]
-
-
-def _all(zoo: Path) -> list[str]:
-    files = (path for end in ("card.json", "onnx") for path in zoo.glob(f"*/*/*.{end}"))
-    named = (path for path in files if not path.name.startswith("."))  # others are copies of macOS, say
-    names = sorted({"/".join((*path.parts[-3:-1], path.name.split(".")[0])) for path in named})
-    if not names:
-        raise UsageError(f"{zoo}: no action models, expected ROBOT/ACTION/duration.onnx (`tailor train` writes them)")
-    return names
+    return rules(model, path, tree, arguments.data)
 
 
 def _quality(card: Card) -> str:
@@ -193,21 +193,23 @@ def _show(cards: list[Card], as_json: bool) -> None:
             console.print(f"[bold]{escape(plain(key))}[/bold]: {escape(plain(text))}")
 
 
-def _check(names: list[str], arguments: argparse.Namespace, named: Path | None) -> int:
-    """Check models of `arguments.zoo`, which the user `named` or not; exit code 0 if all are sound, else 1."""
+def _check(found: Mapping[Path, list[str]], arguments: argparse.Namespace) -> int:
+    """Check models by their folders; exit code 0 if all are sound, else 1."""
     from tailor.tools.learning.remaking import remaking_advice
     from tailor.tools.learning.zoo_checks import checked
 
     failed: dict[str, str] = {}
     stale: dict[str, str] = {}
-    for name, failure, differs in checked(names, arguments.models, arguments.zoo):
-        failed |= {name: failure} if failure else {}
-        stale |= {name: differs} if differs else {}
-        if not arguments.json:
-            print(plain(f"{name}: {failure or (f'stale: {differs}' if differs else 'sound')}"))
+    for zoo, names in found.items():
+        for name, failure, differs in checked(names, arguments.models, zoo):
+            failed |= {name: failure} if failure else {}
+            stale |= {name: differs} if differs else {}
+            if not arguments.json:
+                print(plain(f"{name}: {failure or (f'stale: {differs}' if differs else 'sound')}"))
     if arguments.json:
-        print(json.dumps({"checked": [*dict.fromkeys((*names, *failed))], "failed": failed, "stale": stale}))
+        every = [name for names in found.values() for name in names]
+        print(json.dumps({"checked": [*dict.fromkeys((*every, *failed))], "failed": failed, "stale": stale}))
     else:
         for robot in dict.fromkeys(name.split("/")[0] for name in stale):
-            print(f"stale models of {robot} are made anew by {remaking_advice(robot, named)}")
+            print(f"stale models of {robot} are made anew by {remaking_advice(robot, arguments.zoo)}")
     return 1 if failed or stale else 0

@@ -18,8 +18,8 @@ from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.card_lines import missed_failures
 from tailor.tools.learning.changed_episodes import changed_episodes_warning
+from tailor.tools.learning.model_folders import target_zoo
 from tailor.tools.learning.recipe import MAX_SEED
-from tailor.tools.learning.target_zoo import target_zoo
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
     DEFAULT_FAILURE_LEARNER,
