@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Literal
@@ -100,6 +101,8 @@ def _faults(settings: PlainSettings) -> list[str]:
             faults.append(f"{name} is {value:g}, expected more than 0, up to {MAX_STD:g}")
     if pose.start and (len(pose.start) != 3 or not all(abs(value) <= MAX_START for value in pose.start)):
         faults.append(f"pose.start: expected x, y and phi, of at most {MAX_START:g}")
+    elif pose.start and abs(pose.start[2]) > math.tau:  # every angle has a value within: this one is in degrees
+        faults.append(f"pose.start: phi is {pose.start[2]:g}, expected radians, from -6.28 to 6.28")
     if not topics.pose and not pose.start:
         faults.append("topics.pose is empty: expected a localiser, or pose.start")
     if not topics.cmd_vel or not topics.odom:

@@ -20,6 +20,7 @@ WRONG = {
     'robot = "r"\n[topics]\nodom = ""': "expected a name each",
     'robot = "r"\n[pose]\nstart = [1.0]': "expected x, y and phi",
     'robot = "r"\n[pose]\nstart = [1e16, 0, 0]': "expected x, y and phi, of at most 1e+06",
+    'robot = "r"\n[pose]\nstart = [0, 0, 90]': "pose.start: phi is 90, expected radians, from -6.28 to 6.28",
     'robot = "r"\n[pose]\nstart = [nan, 0, 0]': "expected x, y and phi",
     'robot = "r"\n[pose]\ndrift_per_m = -1.0': "pose.drift_per_m is -1, expected 0 to 1",
     'robot = "r"\n[pose]\nmax_std_m = 0.0': "pose.max_std_m is 0, expected more than 0, up to 1000",
