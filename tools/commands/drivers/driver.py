@@ -32,6 +32,7 @@ from tailor.tools.cli.systems.endpoint import (
     sender_of,
 )
 from tailor.tools.launch.hardware import hardware_of
+from tailor.tools.launch.other_drivers import other_drivers_noted
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -58,6 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
         codec.prime()
         realtime.take_fifo(realtime.DRIVER_PRIORITY)
         realtime.elevate_bus_threads()
+        report = reporter(hardware.robot, terminal)
         node = HardwareNode(
             hardware,
             spec,
@@ -66,9 +68,10 @@ def run(arguments: argparse.Namespace) -> int:
             epoch=1 + secrets.randbelow(2**62),
             leave=leave,
             retry=RetryPolicy(attempts=arguments.attempts),
-            report=reporter(hardware.robot, terminal),
+            report=report,
         )
-        code = 0 if node.run(lambda: end.reached(session), notifier) else 1
+        with other_drivers_noted(session, hardware.robot, report):
+            code = 0 if node.run(lambda: end.reached(session), notifier) else 1
     end.check()
     return code
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import secrets
 from collections.abc import Callable
+from functools import partial
 
 from tailor.runtime import realtime
 from tailor.runtime.clock import MonotonicClock
@@ -19,10 +20,12 @@ from tailor.simnodes.guard import Guard, Mode
 from tailor.simnodes.node import Node
 from tailor.simnodes.world import World
 from tailor.tools.cli.package_run import blamed_on_running_package
+from tailor.tools.cli.plain_text import note
 from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.systems.system_flags import deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
+from tailor.tools.launch.other_drivers import other_drivers_noted
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world
 
@@ -58,7 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
         realtime.elevate_bus_threads()
         epoch = 1 + secrets.randbelow(2**62)  # another one at every start
         node = Node(world, declared, session, MonotonicClock(), epoch, arguments.speed, leave)
-        with blamed_on_running_package(spec_of_robot(arguments.robot)):
+        noted = other_drivers_noted(session, arguments.robot, partial(note, to_stderr=True))
+        with noted, blamed_on_running_package(spec_of_robot(arguments.robot)):
             _run(node, world.body.robot, lambda: end.reached(session), notifier)
     end.check()
     return 0
