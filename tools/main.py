@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import importlib
 import io
 import os
-import re
 import sys
-from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from collections.abc import Sequence
 
 from tailor import __version__
 from tailor.schemas.errors import UnreachableError, UsageError
@@ -17,6 +14,7 @@ from tailor.tools.cli.closed_streams import drop_failed_output, replace_closed_s
 from tailor.tools.cli.extras import NEEDS, advice, extra_of, require
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.termination import interrupted_by_sigterm
+from tailor.tools.command_parser import CommandParser, nearest
 
 TRY_AGAIN = 75
 INTERRUPTED = 130
@@ -143,8 +141,11 @@ def _run(arguments: list[str]) -> int:
         print(f"tailor {__version__}")
         return 0
     name, *rest = arguments
+    if name.startswith("-"):
+        _report(f"tailor: '{plain(name)}' stands before the command, expected it behind: tailor COMMAND {plain(name)}")
+        return 2
     if name not in COMMANDS:
-        _report(f"tailor: unknown command '{plain(name)}'{_nearest(name, COMMANDS)} (see tailor --help)")
+        _report(f"tailor: unknown command '{plain(name)}'{nearest(name, COMMANDS)} (see tailor --help)")
         return 2
     return _call(name, rest)
 
@@ -159,37 +160,13 @@ def _report(line: str) -> None:
 
 def _call(name: str, rest: Sequence[str]) -> int:
     module = importlib.import_module(COMMANDS[name][0])
-    parser = _Parser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
+    parser = CommandParser(prog=f"tailor {name}", description=module.__doc__, allow_abbrev=False)
     module.configure(parser)
-    parsed = _parsed(parser, rest)
+    parsed = parser.parsed(rest)
     require(*NEEDS.get(name, ()))
     if module.__name__.split(".")[-2] not in WITH_WORKERS:
         return int(module.run(parsed))
     return interrupted_by_sigterm(lambda: int(module.run(parsed)), parser.prog)
-
-
-def _parsed(parser: argparse.ArgumentParser, rest: Sequence[str]) -> argparse.Namespace:
-    parsed, left = parser.parse_known_args(rest)
-    if left and not any(word.startswith("-") for word in left):  # names that flags separate from the first ones
-        return parser.parse_intermixed_args(rest)
-    return parser.parse_args(rest) if left else parsed
-
-
-class _Parser(argparse.ArgumentParser):
-    """Reports an error in one line, like all other errors, without the usage."""
-
-    def error(self, message: str) -> NoReturn:
-        unknown = re.match(r"unrecognized arguments: (--[^\s=]+)", message)
-        meant = _nearest(unknown[1], self._option_string_actions) if unknown else ""
-        raise UsageError(f"{message}{meant} (see {self.prog} --help)")
-
-
-def _nearest(word: str, known: Iterable[str]) -> str:
-    """A question about the known word that was probably meant; empty if none is like it."""
-    import difflib  # of no use to a command that is right
-
-    near = difflib.get_close_matches(word, list(known), n=1)
-    return f", did you mean {near[0]}?" if near else ""
 
 
 def _overview() -> str:

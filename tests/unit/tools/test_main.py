@@ -50,6 +50,23 @@ def test_what_was_probably_meant_is_asked_for(capsys, words, meant):
     assert f", did you mean {meant}? (see tailor" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        ("--once up soccer", "tailor: '--once' stands before the command, expected it behind: tailor COMMAND --once"),
+        ("up --secure soccer", "domain; 'soccer' was taken as a value of --secure, expected it before --secure (see"),
+        ("train --data a b agilo --json", "robot; 'agilo' was taken as a value of --data, expected it before --data ("),
+        ("train --data agilo", "tailor train: the following arguments are required: robot (see tailor train --help)"),
+        ("up --seed 3", "tailor up: the following arguments are required: domain (see tailor up --help)"),
+        ("replay run.mcap --from 3", "tailor replay: unrecognized arguments: --from 3 (see tailor replay --help)"),
+    ],
+)
+def test_a_word_in_the_wrong_place_is_named(capsys, words, error):
+    """The domain was said to be missing though it stood there, and --remap to be like --from."""
+    assert main(words.split()) == 2
+    assert error in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", [["demo", "--output"], ["letters", "A", "--output"]])
 def test_a_file_in_the_place_of_a_folder_is_named_with_what_was_expected(capsys, tmp_path, command):
     (tmp_path / "file").touch()
