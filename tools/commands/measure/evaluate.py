@@ -19,11 +19,13 @@ from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 
 RESUME = "--resume"
+MISSED = 1  # exit code: the results of an evaluation are not what it tests for
 STOPPED = 128  # exit codes above it: a signal ended an evaluation
 EPILOG = """
 `tailor evaluate NAME --help` lists the flags of one evaluation. With `all`, each takes the flags that it has.
 --resume: skip evaluations with a page of this source and these models in the report's folder. Finished episodes are
-kept in any case.
+kept in any case. The exit code is 1 if the results miss an evaluation's criterion (docs/evaluating.md), e.g. since too
+few starts prove nothing.
 
 examples:
   tailor evaluate refinement --domain soccer --scenario approach-dribble --json
@@ -104,9 +106,12 @@ def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: b
     """Run one evaluation; with `all`, a UsageError ends only this one (exit code 2)."""
     try:
         with blamed_on_run(settings.domain or domains_of(module)[0], parts_alone=True):
-            return int(module.run(settings))
+            code = int(module.run(settings))
     except UsageError as error:
         if not everything:
             raise
         print(f"tailor evaluate {name}: {error}", file=sys.stderr)
         return 2
+    if code == MISSED:
+        print(f"tailor evaluate {name}: the results miss its criterion, so the exit code is 1", file=sys.stderr)
+    return code

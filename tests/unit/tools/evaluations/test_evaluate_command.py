@@ -146,6 +146,16 @@ def test_of_the_lot_only_those_of_the_domain_run(capsys):
     assert CALLS == ["second"]
 
 
+def test_results_that_miss_the_criterion_are_told_so(capsys):
+    """Exit code 1 came without a word, below a table that shows a gain."""
+    assert main(["evaluate", "second"]) == 1
+    assert capsys.readouterr().err == (
+        "tailor evaluate second: the results miss its criterion, so the exit code is 1\n"
+    )
+    assert main(["evaluate", "first"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_a_lot_of_which_none_has_the_domain_does_not_pass_for_a_success(capsys):
     assert main(["evaluate", "all", "--domain", "courier"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
