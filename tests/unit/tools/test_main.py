@@ -4,6 +4,7 @@ import argparse
 import importlib
 import io
 import re
+import shlex
 import subprocess
 import sys
 from contextlib import redirect_stdout
@@ -12,6 +13,7 @@ import pytest
 
 import tailor
 from tailor.tools.cli.extras import EXTRAS
+from tailor.tools.command_parser import CommandParser
 from tailor.tools.main import COMMANDS, main
 from tests.support.bus_system import ROOT
 
@@ -81,6 +83,25 @@ def test_help_says_what_each_word_does_of_which_one_has_to_be_chosen(command):
     placed = [each for each in parser._actions if not each.option_strings and each.metavar is None]
     chosen = [each for each in placed if len(each.choices or ()) > 1]
     assert [word for each in chosen for word in each.choices if f"{word}: " not in each.help] == []
+
+
+def parser_of(command: str) -> CommandParser:
+    parser = CommandParser(prog=f"tailor {command}", allow_abbrev=False)
+    importlib.import_module(COMMANDS[command][0]).configure(parser)
+    return parser
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_example_in_a_help_can_be_parsed(command):
+    lines = re.findall(r"^  (tailor .*?)(?:  +.*)?$", parser_of(command).epilog or "", re.MULTILINE)
+    for line in (part for whole in lines for part in whole.partition(" > ")[0].split("&&")):
+        _, name, *words = shlex.split(line)
+        parser_of(name).parsed(words)
+
+
+@pytest.mark.parametrize("command", ["up", "keys", "driver", "record", "replay", "gather", "train", "models", "new"])
+def test_the_help_of_a_command_with_many_flags_ends_with_examples(command):
+    assert parser_of(command).epilog.count(f"\n  tailor {command} ") >= 2
 
 
 def test_names_may_follow_flags(capsys):

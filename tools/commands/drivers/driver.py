@@ -34,9 +34,24 @@ from tailor.tools.cli.systems.endpoint import (
 from tailor.tools.launch.hardware import hardware_of
 from tailor.tools.launch.other_drivers import other_drivers_noted
 
+EPILOG = """\
+examples:
+  tailor driver robot.toml
+  tailor driver mypackage.rover:Rover
+  tailor driver examples/rover_driver.py:Rover
+
+robot.toml, at its shortest, for a robot whose package is courier:
+  robot = "courier"
+  [bus]
+  connect = "tcp/192.168.0.7:7447"  # the robot's zenoh router, or zenoh-bridge-ros2dds
+
+A bus must run: tailor bus. Then tailor check-driver ROBOT, tailor executive DOMAIN --wait, tailor arm ROBOT."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor driver`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     parser.add_argument("hardware", metavar="FILE.toml|MODULE:CLASS", help="description or class of the hardware")
     parser.add_argument("--leave", metavar="HEX", default="", help="sender id of the executive that may arm it once")
     parser.add_argument(

@@ -42,8 +42,20 @@ LAST_CLOCK_NS = (2**31 - 1) * 10**9  # ROS's clock ends in 2038
 TAIL_S = 0.2  # for the last messages to be sent before the session closes
 
 
+EPILOG = """\
+examples:
+  tailor replay run.mcap --rate 2 --start 10 --duration 5
+  tailor replay run.mcap --topics 'odom,pose' --remap agilo/odom=ghost/odom
+  tailor replay run.mcap --clock 100                 (for ROS 2 nodes with use_sim_time)
+  tailor replay run.mcap --substitute executive      (tailor bus --security open, and tailor executive, run before)
+
+A bus must run: tailor bus. `tailor view` needs none."""
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor replay`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     add = parser.add_argument
     add("file", help="recording (MCAP)")
     add("--rate", type=float, default=1.0, metavar="X", help=f"recorded s per s, {MIN_RATE:g} to {MAX_RATE:g}")

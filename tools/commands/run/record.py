@@ -38,6 +38,15 @@ from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, confi
 from tailor.tools.recordings import health_text
 from tailor.tools.recordings.recorder_bus import RecorderBus
 
+EPILOG = """\
+examples:
+  tailor record -o run.mcap
+  tailor record --topics 'odom,exec/*' --exclude tick
+  tailor record -o run.mcap --max-size 100 --max-duration 600      (run_000.mcap, run_001.mcap ...)
+  tailor record --snapshot 30                                      (the last 30 s, after a failure, or on request:)
+  tailor record --write
+
+A bus must run: tailor bus, or tailor up, which records as well with --record."""
 PERIOD_S = 0.1  # long, to save CPU time; with FLUSH_NS it bounds the loss after kill -9
 MAX_LIMIT = 1e9  # MB or seconds, beyond any disk and run
 SNAPSHOT_KEY = "recorder/snapshot"
@@ -45,6 +54,8 @@ SNAPSHOT_KEY = "recorder/snapshot"
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor record`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     add = parser.add_argument
     add("-o", "--output", metavar="FILE", help="new file (default: tailor-DATE-TIME.mcap)")
     configure_selection(parser)

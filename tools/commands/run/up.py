@@ -23,9 +23,20 @@ from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.launch.system import run_system
 
+EPILOG = """\
+examples:
+  tailor up soccer --record run.mcap                 (Ctrl-C stops it; then tailor view run.mcap)
+  tailor up soccer --scenario waypoints --seed 3 --once
+  tailor up courier --hardware robot.toml            (a real robot; then tailor arm courier)
+  tailor up soccer --secure                          (other machines, after tailor keys new router --host ADDRESS)
+
+In another terminal: tailor status, tailor estop, tailor goal. A robot that was stopped is armed by tailor arm ROBOT."""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor up`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     configure_system(parser)
     configure_hosting(parser)
     parser.add_argument(

@@ -30,11 +30,29 @@ DAYS = 825  # two years and a quarter, as many clients accept at most
 MAX_DAYS = 9999
 SESSION = "session.json5"
 
+EPILOG = """\
+roles:
+  executive, driver, recorder, scene   publish what the Tailor process of that name does
+  player                               publishes what tailor replay does
+  people                               arm, stop and send goals
+  observer                             publishes nothing: status, view
+
+examples:
+  tailor keys new router --host robot.local --host 10.0.0.5      (first, on the machine of the bus: its names)
+  tailor keys new operator --role people                         (then copy the folder tailor-keys/operator)
+  tailor estop --connect tls/robot.local:7448 --key operator     (on the other machine)
+  tailor keys new bridge --role driver --for tls/robot.local:7448
+  tailor keys list
+  tailor keys revoke operator
+
+docs/security.md lists what each role may publish."""
 VERBS = "new: make a key; list: names and their roles; revoke: take a name's rights at the next start of the bus"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Flags of `tailor keys`."""
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = EPILOG
     parser.add_argument("action", choices=("new", "list", "revoke"), help=VERBS)
     parser.add_argument("name", nargs="?", default="", help="name of a process, e.g. agilo-driver")
     parser.add_argument("--role", choices=get_args(Role), help="what it may do; not for the name 'router'")
