@@ -23,9 +23,9 @@ from tailor.runtime.stopping import Stop, stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import beside, check_output, whole_output
-from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.plain_text import note, plain
 from tailor.tools.cli.systems.bus_renewal import BusRun, open_run, opened_anew
-from tailor.tools.cli.systems.endpoint import configure_bus, configure_sender, refuse_bus_flags, sender_of
+from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus, configure_sender, refuse_bus_flags, sender_of
 from tailor.tools.recordings.damage_notice import warn
 from tailor.tools.scenes.foxglove_layout import layout
 from tailor.tools.scenes.live_scenes import publish_scenes
@@ -103,6 +103,8 @@ def _live(arguments: argparse.Namespace) -> int:
     with ExitStack() as sessions:
         run: BusRun | None = opened(sessions)
         codec.prime()
+        if not notifier.supervised:
+            note(f"publishing scenes on {bus_settings(arguments).endpoint}; Ctrl-C stops")
         while run is not None:
             publish_scenes(run.session, _ended(run, stop), notifier)
             run = opened_anew(sessions, opened, lambda: stop.requested)

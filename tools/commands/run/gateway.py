@@ -16,6 +16,7 @@ from tailor.runtime.processes.notify import Notifier
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UnreachableError, UsageError
 from tailor.schemas.services import ROLES
+from tailor.tools.cli.plain_text import note
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
 from tailor.tools.keys.registry import ROUTER, registered_roles
 
@@ -54,6 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))  # a port scan must not use them up
     with open_gateway(listen, folder, identity, roles, arguments.only or ROLES):
+        if not notifier.supervised:
+            note(f"{listen} lets in {', '.join(arguments.only or ('every role',))}; Ctrl-C ends it")
         notifier.ready()
         while not stop.requested:
             notifier.alive()
