@@ -1,6 +1,7 @@
 """`tailor units` writes unit files that systemd accepts, and whose commands our own parsers accept."""
 
 import argparse
+import getpass
 import importlib
 import inspect
 import shlex
@@ -67,6 +68,34 @@ def test_a_user_whom_systemd_would_not_find_is_refused_and_on_another_machine_re
     refused = capsys.readouterr()
     assert "--user no-such-robot: no such user on this machine, expected one that exists" in refused.err
     assert refused.out == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "missing"),
+    [
+        (["--secure", "tls/0.0.0.0:7448", "--keys", "keys"], "keys/router"),
+        (["--parts", "driver", "--connect", "tls/robot:7448", "--key", "mine"], "mine"),
+    ],
+)
+def test_a_key_without_which_a_service_ends_is_refused_and_on_another_machine_reported(
+    tmp_path, capsys, monkeypatch, words, missing
+):
+    """The units were written without a word, and the bus ended at each start."""
+    monkeypatch.chdir(tmp_path)
+    command = ["units", str(tmp_path / "system"), "--user", getpass.getuser(), *words]
+    assert main(command) == 0
+    reported = capsys.readouterr().err
+    assert reported.startswith(f"{tmp_path / missing}: no authority.pem, expected a folder that")
+    assert reported.endswith("; expected on the machine that runs these services\n")
+    monkeypatch.setattr(units, "SYSTEMD", (str(tmp_path),))
+    assert main([*command, "--force"]) == 2
+    assert f"{tmp_path / missing}: no authority.pem" in capsys.readouterr().err
+    assert main(["keys", "new", "router", "--host", "robot", "--keys", "keys"]) == 0
+    assert main(["keys", "new", "mine", "--role", "driver", "--keys", "keys"]) == 0
+    (tmp_path / "mine").symlink_to(tmp_path / "keys" / "mine")
+    capsys.readouterr()
+    assert main([*command, "--force"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("part", SERVICES)
@@ -208,6 +237,10 @@ def parsed(*arguments):
         (("--user", "robot", "--parts", "bus,wheel"), "--parts bus,wheel: unknown wheel, expected some of: bus, "),
         (("--user", "robot", "--parts", "recorder"), "expected --record DIR as well"),
         (("--user", "robot", "--driver-command", "drive"), "--driver-command drive: expected the absolute path"),
+        (
+            ("--user", "robot", "--driver-command", "/no/drive -v"),
+            "--driver-command /no/drive: there is no such program",
+        ),
         (("--user", "robot", "--driver-command", "'x"), "--driver-command 'x: No closing quotation"),
         (("--user", "robot", "--connect", "tcp"), "bus endpoint 'tcp': expected PROTOCOL/HOST:PORT"),
         (("--user", "robot", "--connect", "tls/host:7447"), "tls/host:7447: who connects there has a password"),

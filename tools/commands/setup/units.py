@@ -12,10 +12,13 @@ import pwd
 import re
 import shlex
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from tailor.executive.composition import build_context
+from tailor.runtime.bus.rights.credentials import identity_in
+from tailor.runtime.bus.rights.key_faults import check_files
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
@@ -23,6 +26,7 @@ from tailor.tools.cli.systems.bus_settings import BusSettings, configure_hosting
 from tailor.tools.cli.systems.deployment import executive_config
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
 from tailor.tools.cli.systems.system_flags import deployment_from
+from tailor.tools.keys.registry import ROUTER
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.launch.hosting import check_own_endpoint
 from tailor.tools.launch.units.unit_files import PARTS, UnitsConfig, unit_files
@@ -94,7 +98,25 @@ def _bus(arguments: argparse.Namespace, parts: tuple[str, ...]) -> BusSettings:
     if settings.key and ("bus" in parts or len(parts) > 1):
         raise UsageError(f"--key {settings.key}: a key has one role, expected one part that connects, see --parts")
     key, keys = (_absolute(path) if path else "" for path in (settings.key, settings.keys))
+    own = f"{keys}/{ROUTER}" if "bus" in parts and settings.remote else ""
+    _check_keys([folder for folder in (key, own) if folder], arguments)
     return replace(settings, key=key, keys=keys)
+
+
+def _check_keys(folders: Sequence[str], arguments: argparse.Namespace) -> None:
+    """Keys that a service would end without; those that are not here may be on the machine that runs it."""
+    for folder in folders:
+        try:
+            check_files(identity_in(folder))
+        except UsageError as error:
+            if _of_this_machine(arguments.folder):
+                raise
+            print(f"{error}; expected on the machine that runs these services", file=sys.stderr)
+
+
+def _of_this_machine(folder: Path) -> bool:
+    """Whether systemd reads units there; others are made for another machine, perhaps."""
+    return any(folder.resolve().is_relative_to(each) for each in SYSTEMD)
 
 
 def _absolute(path: str) -> str:
@@ -118,7 +140,7 @@ def _user(name: str, folder: Path) -> str:
         pwd.getpwnam(user)
     except KeyError:
         missing = f"--user {user}: no such user on this machine"
-        if any(folder.resolve().is_relative_to(each) for each in SYSTEMD):
+        if _of_this_machine(folder):
             raise UsageError(f"{missing}, expected one that exists (useradd --system {user})") from None
         print(f"{missing}; expected on the one that runs these services", file=sys.stderr)
     return user
@@ -140,5 +162,6 @@ def _driver_command(text: str) -> tuple[str, ...]:
     except ValueError as error:
         raise UsageError(f"--driver-command {text}: {error}") from error
     if command and not (os.path.isabs(command[0]) and os.access(command[0], os.X_OK)):
-        raise UsageError(f"--driver-command {command[0]}: expected the absolute path of a program")
+        none = ": there is no such program" if os.path.isabs(command[0]) else ""
+        raise UsageError(f"--driver-command {command[0]}{none}: expected the absolute path of a program")
     return command
