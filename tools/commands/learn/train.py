@@ -14,6 +14,7 @@ from rich.table import Column, Table
 from tailor.models.cards.card import SUCCESS_KINDS, UNITS
 from tailor.models.cards.card_shape import TEST_FIGURES
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed import domain_names, robot_names, spec_of_robot
 from tailor.tools.cli.number_checks import at_least
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.card_lines import missed_failures
@@ -70,6 +71,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Train; exit code 0."""
+    if arguments.robot in domain_names() and arguments.robot not in robot_names():
+        spec_of_robot(arguments.robot)  # which names the robot of that domain; other names are those of data sets
     if arguments.seed > MAX_SEED:
         raise UsageError(f"--seed is {arguments.seed}, expected 0 to {MAX_SEED}")
     request = TrainingRequest(

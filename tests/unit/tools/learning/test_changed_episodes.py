@@ -39,6 +39,12 @@ def test_training_warns_of_episodes_that_were_simulated_with_another_body(data, 
     assert "`tailor models check powercube`" in warning
 
 
+def test_who_names_the_domain_is_told_its_robot(capsys) -> None:
+    """`tailor gather soccer` told so, and `tailor train soccer` that data/soccer has no data sets."""
+    assert main(["train", "soccer"]) == 2
+    assert capsys.readouterr().err.endswith("(agilo is the robot of soccer)\n")
+
+
 def test_nothing_is_said_of_todays_source_of_recorded_runs_and_of_an_unknown_robot(data: Path) -> None:
     def warning(folder: str, robot: str = "powercube") -> str:
         return changed_episodes_warning(TrainingRequest(robot, data / "zoo", data=(data / folder,)))
