@@ -178,6 +178,8 @@ GOLDEN = "tests/data/golden/soccer-approach.mcap"
         (("bench", "ticks"), "sim"),
         (("picture", GOLDEN), "plots"),
         (("models", "plot", "agilo/goToPose"), "plots"),
+        (("why", GOLDEN, "-o", "out/why.png"), "plots"),  # before it explains anything
+        (("compare", GOLDEN, GOLDEN, "--plot", "out/plot.png"), "plots"),
     ],
 )
 def test_a_missing_extra_is_named_in_one_line(arguments, extra):

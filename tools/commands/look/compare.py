@@ -16,6 +16,7 @@ from rich.table import Table
 
 from tailor.schemas.messages import ActionFinished, PlanReport
 from tailor.schemas.reason_text import reason_text
+from tailor.tools.cli.extras import require
 from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
@@ -34,6 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     """0 if results and commands are equal, 1 if not."""
     if arguments.plot:
         check_output("--plot", arguments.plot, (".png",))
+        require("plots")
     a, b = compared_run(arguments.first), compared_run(arguments.second)
     comparison = _comparison(a, b)
     if arguments.json:

@@ -13,6 +13,7 @@ from typing import Any
 
 from rich.console import Console
 
+from tailor.tools.cli.extras import require
 from tailor.tools.cli.output_files import check_output, whole_output
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.viewer.decisions.explained_decisions import ExplainedDecision, explained_decisions
@@ -40,6 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     output: Path | None = arguments.output
     if output is not None:
         check_output("--output", output, (".png", ".html"))
+        require("plots")
     free, values, drawn = False, list[dict[str, Any]](), list[tuple[str, Explanation]]()
     for explained in explained_decisions(arguments.recording, arguments.at, arguments.sender):
         free = free or explained.explanation is not None
