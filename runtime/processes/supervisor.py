@@ -11,7 +11,8 @@ from tailor.runtime.processes.child import Child
 from tailor.runtime.processes.supervised import ProcessSpec, State, Supervised
 from tailor.schemas.messages import ProcessState
 
-FINAL_CODES = (0, 2)  # done; bad input, which a restart does not correct
+BAD_INPUT = 2
+FINAL_CODES = (0, BAD_INPUT)  # done; what a restart does not correct
 PAUSE_NS = 500_000_000  # between two polls: the supervisor itself was paused, so its children's silence proves nothing
 
 
@@ -38,6 +39,11 @@ class Supervisor:
     def starts(self, name: str) -> int:
         """How often a process was started."""
         return self._processes[name].starts
+
+    def refused(self, name: str) -> bool:
+        """Whether a process has ended for bad input, before it was ready for the first time."""
+        process = self._processes[name]
+        return process.state is State.ENDED and not process.has_begun and process.child.exit_code() == BAD_INPUT
 
     def status(self, name: str) -> str:
         """What a process reported last of its own state, for people."""

@@ -17,6 +17,7 @@ from tailor.runtime.processes.supervised import ProcessSpec, State
 from tailor.runtime.processes.supervisor import Supervisor
 from tailor.runtime.recordings.new_file import check_new_file
 from tailor.runtime.stopping import Stop
+from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of
 from tailor.schemas.messages import DriverState, ExecStatus
 from tailor.schemas.reason_text import result_text
@@ -50,7 +51,7 @@ def run_system(config: LaunchConfig, screen: Screen, stop: Stop) -> str:
       Result of the executive: "achieved", "failed: " with a reason, or "" if it was stopped.
 
     Raises:
-      UsageError: Bad configuration; no process has been started.
+      UsageError: Bad configuration, or there was no robot since its process has refused its input; none has moved.
     """
     check_models(build_context(config.executive, sender=""))  # both report all that is wrong with it
     if config.record is not None:
@@ -103,7 +104,10 @@ class _System:
             self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
         robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
         if not self._start(robot):
-            return self._not_started("driver" if config.hardware else "simulator")
+            failure = self._not_started("driver" if config.hardware else "simulator")
+            if failure and self._supervisor.refused(robot.name):  # it has printed why: an extra is missing, say
+                raise UsageError(failure)
+            return failure
         self._supervisor.start(executive_process(config, senders), time.monotonic_ns())
         return self._supervise()
 

@@ -189,6 +189,17 @@ def test_a_process_that_ended_well_or_for_bad_input_or_must_not_restart_stays_en
     assert (len(FakeChild.made), supervisor.state("sim")) == (1, State.ENDED)
 
 
+def test_a_process_that_refuses_its_input_is_told_from_one_that_ended_otherwise_or_later(supervisor):
+    for code, ready in ((2, False), (1, False), (2, True)):
+        supervisor.start(ProcessSpec("sim", ["x"], must_begin=True, restarts=False), 0)
+        assert not supervisor.refused("sim")
+        FakeChild.made[-1].reported = Report(ready=ready)
+        supervisor.poll(1)
+        FakeChild.made[-1].code = code
+        supervisor.poll(2)
+        assert supervisor.refused("sim") == ((code, ready) == (2, False))
+
+
 @pytest.mark.promise("P2")
 def test_a_silent_child_is_killed_after_a_second_and_a_live_one_is_not(supervisor):
     supervisor.start(ProcessSpec("executive", ["x"], silence_ns=S), 0)

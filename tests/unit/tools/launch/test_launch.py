@@ -1,14 +1,18 @@
 """What the launcher concludes from its children: whose messages count, and what a lost recording means."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from tailor.executive.composition import ExecutiveConfig
+from tailor.runtime.processes.supervised import State
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.cli.systems.bus_settings import BusSettings
+from tailor.tools.launch import system
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
     LaunchConfig,
@@ -50,7 +54,24 @@ def test_only_the_first_executive_has_the_leave_to_arm():
 
 
 def config(**changes):
-    return LaunchConfig(ExecutiveConfig("soccer", "approach"), BusSettings(), record=Path("r.mcap"), **changes)
+    recorded = {"record": Path("r.mcap")} | changes
+    return LaunchConfig(ExecutiveConfig("soccer", "approach"), BusSettings(), **recorded)
+
+
+@pytest.mark.parametrize("refused", [True, False])
+def test_a_robot_whose_process_refuses_its_input_is_bad_input(refused):
+    """`tailor up` ended with 1, a negative result, where the extra of the simulator was missing."""
+    run = object.__new__(system._System)
+    run._config, run._senders, run._robot = config(record=None, scene=False), Senders(), "agilo"
+    run._stop = SimpleNamespace(requested=False)
+    run._supervisor = SimpleNamespace(
+        start=lambda *_: None, state=lambda _: State.ENDED, refused=lambda name: refused and name == "sim"
+    )
+    if not refused:
+        assert run.run() == "failed: the simulator did not start"
+        return
+    with pytest.raises(UsageError, match="failed: the simulator did not start"):
+        run.run()
 
 
 def test_only_the_first_start_of_a_driver_knows_who_has_leave():
