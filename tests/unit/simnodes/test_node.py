@@ -144,8 +144,10 @@ def test_a_paused_world_moves_in_requested_steps_alone_and_the_guard_waits_for_i
     robot = moving_robot()
     robot.bus.servers["pause"].waiting.append(Request("true"))
     assert robot.periods(100) == []
+    robot.bus.servers["step"].waiting.append(Request("5"))
+    assert robot.periods(2) == [0.5] * 5
     robot.bus.servers["step"].waiting.append(Request("31"))
-    assert robot.periods(5) == [0.5] * 30 + [0.0], "its guard counts the time of the world"
+    assert robot.periods(5) == [0.5] * 25 + [0.0] * 6, "its guard counts the time of the world, also within a period"
 
 
 @pytest.mark.promise("P38")
