@@ -10,8 +10,8 @@ from tailor.tools.learning.gathering.active_episodes import Active, run_active
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
 from tailor.tools.learning.gathering.uncertain_episodes import Uncertain, run_uncertain
 from tailor.tools.learning.making.making import Making
+from tailor.tools.learning.making.recipe_checks import learned_beside
 from tailor.tools.learning.recipe import MAX_SEED, Round
-from tailor.tools.learning.recipe_checks import learned_beside
 from tailor.tools.parallel.steps import Step, counted
 
 

@@ -14,8 +14,8 @@ from tailor.tools.learning.gathering import data_set_spec, run_data_sets
 from tailor.tools.learning.making.episodes import gather_calibration, gather_random, gather_round, gather_uncertain
 from tailor.tools.learning.making.installing import check_complete
 from tailor.tools.learning.making.making import CHOOSING, Making
+from tailor.tools.learning.making.recipe_checks import check_recipe
 from tailor.tools.learning.making.training import of_action, train_all, training_request
-from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.training_request import spaces_by_kind
 from tailor.tools.learning.training_run import checked
 from tailor.tools.parallel.steps import Step

@@ -6,8 +6,8 @@ import pytest
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering import beside_objects
+from tailor.tools.learning.making.recipe_checks import check_recipe
 from tailor.tools.learning.recipe import Recipe, Round
-from tailor.tools.learning.recipe_checks import check_recipe
 from tailor.tools.learning.recipe_file import read_recipe
 from tailor.tools.main import main
 
