@@ -17,10 +17,10 @@ def changed_files(episodes: Mapping[str, Any], today: Mapping[str, str]) -> list
     """
     simulated = [each for each in episodes.get("sources", ()) if str(each.get("source", "")).startswith(SIMULATED)]
     stated = {each["source_sha256"] for each in simulated} & set(episodes.get("source_files", {}))
-    return sorted({name for sha256 in stated for name in _differing(episodes["source_files"][sha256], today)})
+    return sorted({name for sha256 in stated for name in differing_files(episodes["source_files"][sha256], today)})
 
 
-def _differing(stated: Mapping[str, str], today: Mapping[str, str]) -> set[str]:
+def differing_files(stated: Mapping[str, str], today: Mapping[str, str]) -> set[str]:
     """Files that were added, removed or changed; stated hashes are beginnings of hashes."""
     return {
         name

@@ -18,6 +18,7 @@ from tailor.models.episodes.context_columns import CONTEXT
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
 from tailor.models.episodes.sources import BESIDE_ONE, SELECTED, short_hashes
 from tailor.schemas.errors import UsageError
+from tailor.schemas.installed.changed_source import differing_files
 from tailor.schemas.installed.episode_files import episode_files
 from tailor.schemas.installed.source import episodes_sha256
 from tailor.tools.cli.word_lists import abbreviated
@@ -130,8 +131,7 @@ def _check_source(folder: Path, manifest: Mapping[str, Any], existing: Mapping[s
     """Raise UsageError if a data set was simulated with another source of its robot than the one to gather now."""
     before, today = existing.get("source_files") or {}, manifest.get("source_files", {})
     if existing.get("source_sha256") != manifest.get("source_sha256") and before:
-        files = sorted(name for name in before.keys() | today.keys() if before.get(name) != today.get(name))
-        other = abbreviated(files, NAMED) or "source"
+        other = abbreviated(sorted(differing_files(before, today)), NAMED) or "source"
         raise UsageError(
             f"{folder}: was simulated with another {other}, expected today's to resume; "
             "gather anew with another --out, or into an emptied folder"
