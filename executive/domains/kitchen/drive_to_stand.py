@@ -18,7 +18,6 @@ from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.values import Array
 
 SEEN = VG + 1  # argument: 1 where the stool has been seen, else 0
-FACING_RAD = 0.8  # a robot that faces farther aside of its goal's heading is still bending
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +49,8 @@ class DriveToStand:
     back_m: float = 2.0  # so far it backs off where the stool has been seen: from any stand to the open middle,
     back_rad: float = 2.2  # if it turns less than this in all: a bend takes 1 to 6 s longer then
     off_rad: float = 0.7  # it begins to drive when it faces the goal within this, the less the nearer it is
-    miss_m: float = 0.30  # a bend that ends beside its goal, so near, has missed it
+    miss_m: float = 0.30  # a bend that ends beside its goal, so near, has missed it,
+    bending_rad: float = 0.8  # unless the robot faces farther aside of its goal's heading: then it still bends
     steer_m: float = 0.15  # from here on it steers softer
     there_m: float = 0.05  # so near its goal it only turns
     reached_m: float = 0.02  # along the direction of driving
@@ -105,7 +105,8 @@ class DriveToStand:
         x, y, phi = goal
         distance, bearing = _sight(x, y, pose.x, pose.y)
         is_past = distance * math.cos(bearing - phi) > -self.reached_m
-        return is_past and self.far.near_m < distance < self.miss_m and abs(difference(phi, pose.phi)) < FACING_RAD
+        has_bent = abs(difference(phi, pose.phi)) < self.bending_rad
+        return is_past and has_bent and self.far.near_m < distance < self.miss_m
 
     def _next(self, state: Near, distance: float, off: float) -> Near:
         """The phase now, where the goal is `off` radians left of the direction of driving."""

@@ -11,11 +11,12 @@ from tailor.schemas.kitchen.furniture import kitchen
 
 HOME: Joints = kinematics.HOME
 HOME_RAD = 0.12  # joints that are all so near home: the robot may drive
-HELD_M = (0.04, 0.10)  # width of a gripper that has a cup between its fingers
 HELD_N = 2.0  # force from which it holds something
 PRESSED_N = 10.0  # force from which it presses something: a third of its grip, far beyond the noise of an empty one
 PRESSED_M = 0.004  # set-point below the width of that: so far the firmware lets it run ahead
 CUP_M = 2 * kitchen().cup.radius
+# width of a gripper that has a cup between its fingers: from where they slip off its side to across its handle
+HELD_M = (0.04, CUP_M + kitchen().cup.handle[0] + 0.006)
 GRASP_M = kitchen().table.size[2] + kitchen().cup.grasp_height  # height of the hand at a cup that stands
 AHEAD_M, _, SHOULDER_M = kinematics.SHOULDER
 UP = (0.0, 0.0, 1.0)

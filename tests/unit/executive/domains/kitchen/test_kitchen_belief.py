@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.domains.kitchen.objects import Thing
 from tailor.executive.interfaces.domain_results import kept_at, relocations
 from tailor.schemas.messages import PoseEstimate, Sample
+from tailor.schemas.messages.kitchen import GripperState
 
 PERIOD_NS = 100_000_000
 
@@ -28,3 +30,16 @@ def test_the_gripper_stays_as_wide_as_it_is_and_goes_on_pressing(width, force, e
     kitchen = domains.load("kitchen")
     belief = replace(kitchen.initial_belief(), width=width, force=force)
     assert kept_at(kitchen, belief) == pytest.approx((*(0.0,) * 8, expected))
+
+
+@pytest.mark.parametrize(
+    ("width", "force", "expected"),
+    [(0.074, 30.0, "cup1"), (0.104, 30.0, "cup1"), (0.074, 0.5, ""), (0.02, 30.0, ""), (0.118, 30.0, "")],
+)
+def test_a_cup_is_held_across_its_body_or_its_handle(width, force, expected):
+    kitchen = domains.load("kitchen")
+    unknown = kitchen.initial_belief()
+    cup = Thing("cup1", *unknown.hand, phi=0.0, tilt=0.0, var_xy=1e-4, seen_ns=0)
+    gripper = Sample("b21/gripper", GripperState(0, width, force), PERIOD_NS, 1)
+    belief = kitchen.update(replace(unknown, things=(cup,)), PERIOD_NS, (gripper,), (0.0,) * len(kitchen.axes))
+    assert belief.held == expected
