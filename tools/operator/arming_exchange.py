@@ -52,6 +52,7 @@ class Exchange:
         self._request = request
         self._before: DriverState | None = None  # newest state before the first request
         self._epochs: list[int] = []  # of the states before the first request
+        self._starts: dict[int, tuple[float, DriverState, float]] = {}  # first heard, newest state and its time
         self._heard = 0  # states since the first request
         self._heard_s = now_s
         self._first_s: float | None = None  # of the first request
@@ -62,6 +63,8 @@ class Exchange:
     def hear(self, state: DriverState, at_s: float) -> None:
         """Take a state of the driver that arrived at `at_s`."""
         self.state, self._heard_s = state, at_s
+        first_s, *_ = self._starts.get(state.epoch, (at_s,))
+        self._starts[state.epoch] = first_s, state, at_s
         before = self._first_s is None or at_s <= self._first_s
         if self._before is None or self._first_s is None:
             self._before = state if before else self._before
@@ -71,6 +74,15 @@ class Exchange:
             if self.refusal or _situation(state) != _situation(self._before):
                 self.halt(at_s)
         self._heard += not before
+
+    @property
+    def told(self) -> DriverState | None:
+        """The newest state for people; of several drivers that are to be disarmed, that of one which is not."""
+        if self._request.arm:
+            return self.state
+        begun_s = max((first_s for first_s, *_ in self._starts.values()), default=0.0)
+        live = (state for _, state, at_s in self._starts.values() if at_s >= begun_s)  # others have started anew
+        return next((state for state in live if not self._is_wanted(state)), self.state)
 
     def halt(self, now_s: float) -> None:
         """Repeat a request to arm no more, e.g. since an e-stop was heard."""
@@ -121,16 +133,20 @@ class Exchange:
 
         The first state after the request may have been under way before it. Then it shows what was there before.
         """
-        if self.state is None or self._heard == 0 or not self._is_wanted(self.state):
+        if self.state is None or self._heard == 0 or not self._is_wanted(self.told):
             return False
-        return self._heard > 1 or (self._before is not None and not self._is_wanted(self._before))
+        before = self._before
+        changed = before is not None and before.epoch == self.state.epoch and not self._is_wanted(before)
+        return self._heard > 1 or changed
 
     def _several(self) -> bool:
         """Whether a start was heard again after another one: a driver that starts anew is not."""
         starts = [epoch for epoch, _ in groupby(self._epochs)]
         return len(starts) > len(set(starts))
 
-    def _is_wanted(self, state: DriverState) -> bool:
+    def _is_wanted(self, state: DriverState | None) -> bool:
+        if state is None:
+            return False
         if not self._request.arm:
             return state.mode in ("disarmed", "estopped")
         same_start = self._before is None or state.epoch == self._before.epoch

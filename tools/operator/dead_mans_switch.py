@@ -68,7 +68,9 @@ class DeadMansSwitch:
 
     def _show(self, states: DriverStates, now_ns: int) -> None:
         silent = {robot for robot, at_ns in self._heard_ns.items() if now_ns - at_ns > SILENT_NS}
-        lines = driver_lines(states.newest, shown(self._session.sender), silent)
+        switch = shown(self._session.sender)
+        deaf_first = {robot: min(each, key=lambda state: _hears(state, switch)) for robot, each in states.all().items()}
+        lines = driver_lines(deaf_first, switch, silent)
         for robot, line in lines.items():
             if self._lines.get(robot) != line:
                 self._report(line)
@@ -79,19 +81,23 @@ def driver_lines(states: Mapping[str, DriverState], switch: str, silent: set[str
     """By robot, one line on its driver.
 
     Args:
-      states: Newest state of each driver.
+      states: Newest state of each robot's driver; of several drivers that of one that does not hear the switch, if any.
       switch: Short form of this switch's sender id.
       silent: Robots whose driver has not been heard for a while.
     """
     lines = {}
     for robot, state in sorted(states.items()):
-        detail, held_by, holders = state.detail.rpartition(HELD_BY)
-        hears = bool(held_by) and switch in holders.split(", ")
+        detail, held_by, _ = state.detail.rpartition(HELD_BY)
         cause = reason_text(state.reason, detail.removesuffix("; ") if held_by else state.detail)
         text = f"{robot} is {state.mode}" + (f" ({cause})" if cause else "")
-        text += ": hears this switch" if hears else ": DOES NOT HEAR THIS SWITCH"
+        text += ": hears this switch" if _hears(state, switch) else ": DOES NOT HEAR THIS SWITCH"
         lines[robot] = plain(f"{robot} is SILENT: its state is unknown" if robot in silent else text)
     return lines
+
+
+def _hears(state: DriverState, switch: str) -> bool:
+    _, held_by, holders = state.detail.rpartition(HELD_BY)
+    return bool(held_by) and switch in holders.split(", ")
 
 
 def hold_in_terminal(session: Session, output: TextIO) -> None:

@@ -6,10 +6,11 @@ Loads neither NumPy nor rosbags before the first e-stops are out: their 0.2 s wo
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from threading import Lock
 
+from tailor.runtime.bus.attachment import Origin, unpack
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.session import Session
 from tailor.schemas.messages import DriverState
@@ -19,32 +20,56 @@ STOP = b"\0\1\0\0\1"  # CDR of EStop(True); the codec would have to be loaded fi
 WAIT_S = 1.5  # for every driver to confirm
 HEAR_S = 0.35  # drivers publish at 10 Hz: whoever is there has been heard by then
 REPEAT_S = 0.02  # a publication may be lost, e.g. before the router knows this publisher
+FORGET_S = 2.0  # of a robot's drivers one that is silent: it has started anew; or has frozen, which one press waits for
 FIRST_S = 0.05  # nothing else is done until then
 MAX_READ = 500  # messages of one poll: a flood must not delay the next e-stop
 ALL_DRIVERS = TOPICS["driver"].key.format(robot="*")
 
 
 class DriverStates:
-    """Newest state of every driver on the bus."""
+    """Newest state of every driver on the bus; a robot may have several, e.g. that of a forgotten simulator."""
 
-    def __init__(self, queue: IngestQueue) -> None:
-        """`queue`: publications on `*/driver`."""
-        self.newest: dict[str, DriverState] = {}  # by robot
-        self._queue = queue
+    def __init__(self, queue: IngestQueue, now_s: Callable[[], float] = time.monotonic) -> None:
+        """`queue`: publications on `*/driver`; `now_s`: monotonic seconds."""
+        self._queue, self._now_s = queue, now_s
+        self._drivers: dict[str, dict[str, tuple[DriverState, float]]] = {}  # with its time, by robot and sender
 
-    def poll(self) -> Mapping[str, DriverState]:
-        """Take what has been received since the last call; of each robot only the newest valid state is read."""
+    @property
+    def newest(self) -> dict[str, DriverState]:
+        """By robot, the state of its driver; of several drivers that of one that is not stopped, if there is any."""
+        return {robot: min(states, key=_is_stopped) for robot, states in self.all().items()}
+
+    def all(self) -> dict[str, list[DriverState]]:
+        """By robot, the states of all its drivers, in the order of their senders."""
+        return {robot: [state for _, (state, _) in sorted(each.items())] for robot, each in self._drivers.items()}
+
+    def poll(self) -> Collection[str]:
+        """Take what has been received since the last call; of each driver only the newest valid state is read.
+
+        Returns:
+          Robots that were heard.
+        """
         from tailor.schemas.codec import decode
 
-        fresh: dict[str, DriverState] = {}
+        now_s, fresh = self._now_s(), dict[tuple[str, str], DriverState]()
         for raw in reversed(self._queue.drain()[-MAX_READ:]):
-            robot = raw.key.rpartition("/")[0]
-            if robot not in fresh and raw.is_put:
+            robot, origin = raw.key.rpartition("/")[0], unpack(raw.attachment)
+            driver = robot, origin.sender if isinstance(origin, Origin) else ""
+            if driver not in fresh and raw.is_put:
                 state = decode(DriverState, raw.payload)
                 if isinstance(state, DriverState):
-                    fresh[robot] = state
-        self.newest |= fresh
-        return fresh
+                    fresh[driver] = state
+        for (robot, sender), state in fresh.items():
+            self._drivers.setdefault(robot, {})[sender] = state, now_s
+        heard = {robot for robot, _ in fresh}
+        for robot in heard:
+            drivers = self._drivers[robot].items()
+            self._drivers[robot] = {sender: each for sender, each in drivers if now_s - each[1] <= FORGET_S}
+        return heard
+
+
+def _is_stopped(state: DriverState) -> bool:
+    return state.mode == "estopped"
 
 
 @contextmanager
@@ -74,7 +99,7 @@ class StopButton:
           expected: Robots whose drivers are known to run: one that has frozen is not heard.
 
         Returns:
-          The newest state of each driver, by robot.
+          The newest state of each driver, by robot; of several drivers that of one that is not stopped, if any.
         """
         with self._lock:
             began_s = time.monotonic()
@@ -93,7 +118,7 @@ class StopButton:
 def all_stopped(states: Mapping[str, DriverState], expected: Collection[str] = ()) -> bool:
     """Whether there is a driver, and every one, each of the expected robots' included, has latched the e-stop."""
     heard = bool(states) and states.keys() >= set(expected)
-    return heard and all(state.mode == "estopped" for state in states.values())
+    return heard and all(map(_is_stopped, states.values()))
 
 
 def summary(states: Mapping[str, DriverState], expected: Collection[str] = ()) -> str:

@@ -107,6 +107,28 @@ def test_several_drivers_are_disarmed_at_once():
     assert made.outcome(0.1) is None
 
 
+@pytest.mark.promise("P52")
+def test_one_of_several_drivers_that_is_disarmed_confirms_nothing_for_the_others():
+    """That of a forgotten simulator did, while the robot's own was armed."""
+    made = Exchange(OFF, 0.0)
+    assert made.due(0.0) == OFF
+    for number in range(20):
+        made.hear(state("armed", epoch=8, sender=A) if number % 2 else state(), 0.02 + 0.05 * number)
+        assert made.outcome(0.02 + 0.05 * number) is None
+    assert made.told.epoch == 8
+    made.hear(state(epoch=8), 1.05)
+    assert made.outcome(1.05) is Outcome.CONFIRMED
+
+
+def test_an_armed_driver_that_has_started_anew_is_disarmed_once_that_start_is_heard():
+    made = Exchange(OFF, 0.0)
+    made.due(0.0)
+    made.hear(ARMED, 0.05)
+    assert made.outcome(1.0) is None
+    made.hear(state(epoch=8), 1.0)
+    assert made.outcome(1.0) is Outcome.CONFIRMED
+
+
 @pytest.mark.parametrize("other", [state("armed", sender=B), state("armed", epoch=8, sender=A), state("stopped")])
 def test_another_state_does_not_confirm_a_request_to_arm(other):
     made = exchange(ARM, state())

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
@@ -149,9 +150,55 @@ def test_a_newer_state_counts_and_junk_does_not():
     for payload in (encode(state("estopped")), encode(state("armed")), b"junk"):
         queue.put(Raw("agilo/driver", payload, None, "", True, None))
     queue.put(Raw("agilo/driver", encode(state("estopped")), None, "", False, None))
-    assert states.poll()["agilo"].mode == "armed"
-    assert states.poll() == {}
+    assert states.poll() == {"agilo"}
+    assert states.poll() == set()
     assert states.newest["agilo"].mode == "armed"
+
+
+@pytest.mark.promise("P45")
+def test_of_several_drivers_of_a_robot_none_confirms_the_stop_of_another():
+    """`agilo is estopped`, with exit code 0, while the robot's own driver was armed beside a forgotten simulator."""
+    queue, now_s = IngestQueue(), [0.0]
+    states = stop_button.DriverStates(queue, lambda: now_s[0])
+
+    def hear(**modes):
+        for sender, mode in modes.items():
+            attachment = pack(Origin(1, 0, sender * 32))
+            queue.put(Raw("agilo/driver", encode(state(mode)), attachment, "", True, None))
+        states.poll()
+
+    for order in ({"a": "armed", "b": "estopped"}, {"b": "estopped", "a": "armed"}):
+        hear(**order)
+        assert not all_stopped(states.newest)
+        assert summary(states.newest) == "agilo is armed"
+    hear(b="estopped")
+    assert not all_stopped(states.newest), "the other one may have frozen"
+    hear(a="estopped")
+    assert all_stopped(states.newest)
+    hear(a="armed")
+    for now_s[0] in (1.0, 2.0, 3.0):
+        hear(b="estopped")
+    assert all_stopped(states.newest), "one that is silent has started anew; nothing grows"
+    assert len(states.all()["agilo"]) == 1
+
+
+def test_a_robot_that_has_fallen_silent_keeps_its_last_state():
+    queue, now_s = IngestQueue(), [0.0]
+    states = stop_button.DriverStates(queue, lambda: now_s[0])
+    for robot, now_s[0] in (("agilo", 0.0), ("nomad", 9.0)):
+        queue.put(Raw(f"{robot}/driver", encode(state()), None, "", True, None))
+        states.poll()
+    assert summary(states.newest) == "agilo is armed\nnomad is armed"
+
+
+def test_a_switch_that_one_of_several_drivers_does_not_hear_is_reported():
+    lines = []
+    bus = Bus()
+    switch = DeadMansSwitch(bus, lines.append)
+    hears, deaf = state(detail="held by ab12cd34"), state("disarmed", epoch=2)
+    for each in ([hears, deaf], [deaf, hears]):
+        switch._show(SimpleNamespace(all=lambda each=each: {"agilo": each}), 0)
+    assert lines == ["agilo is disarmed: DOES NOT HEAR THIS SWITCH"]
 
 
 def test_a_switch_is_held_ten_times_a_second_until_it_is_released():
