@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import zenoh
@@ -67,7 +67,11 @@ def opened(config: str, sender: str = "", keys: KeyProfile = PLAIN, node: str = 
     except zenoh.ZError as error:
         raise CannotOpenError(str(error)) from error
     with session:
-        yield Session(session, sender, keys, node)
+        ours = Session(session, sender, keys, node)
+        try:
+            yield ours
+        finally:
+            ours.undeclare()
 
 
 class Session:
@@ -80,12 +84,20 @@ class Session:
         self.keys = keys
         self._zenoh = opened
         self._kept: list[Any] = []  # subscriptions that live as long as the session
+        self._publishers: list[zenoh.Publisher] = []  # one that outlives its session keeps 14 kB of it for good
         self._graph = Announcer(str(opened.info.zid()), f"tailor_{node}", opened.liveliness().declare_token)
 
     @property
     def connected(self) -> bool:
         """Whether the router is connected; zenoh reconnects by itself."""
         return bool(self._zenoh.info.routers_zid())
+
+    def undeclare(self) -> None:
+        """End all publishers: before the session closes."""
+        for each in self._publishers:
+            with suppress(zenoh.ZError):
+                each.undeclare()  # type: ignore[no-untyped-call]
+        self._publishers.clear()
 
     def publisher(self, name: str, robot: str) -> Publisher:
         """Publisher of a topic of tailor.schemas.topics; drops messages rather than wait."""
@@ -104,13 +116,15 @@ class Session:
         return keys
 
     def _wire(self, key: str, encoding: str, priority: Priority) -> zenoh.Publisher:
-        return self._zenoh.declare_publisher(
+        declared = self._zenoh.declare_publisher(
             key,
             encoding=encoding,
             priority=_PRIORITIES[priority],
             congestion_control=zenoh.CongestionControl.DROP,  # a stalled reader must never stall a tick
             express=priority != "data",
         )
+        self._publishers.append(declared)
+        return declared
 
     def player(self, key: str, ros_type: str) -> Publisher:
         """Publisher of recorded bytes under any key; waits rather than drop, so never use it in a tick.
@@ -133,6 +147,7 @@ class Session:
             )
             for each, encoded in keys
         ]
+        self._publishers += declared
         return Publisher(key, Wire(declared), self.sender)
 
     def plain_publisher(self, key: str, encoding: str) -> Publisher:
