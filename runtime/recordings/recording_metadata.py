@@ -19,6 +19,9 @@ CLOCKS = {
 }
 
 
+MAX_EXECUTIVES = 32  # whose provenance is remembered
+
+
 class RecordingMetadata:
     """Metadata records of a recording, name -> entries; written into each of its files."""
 
@@ -26,6 +29,7 @@ class RecordingMetadata:
         """`version` is that of Tailor; `started_ns` is wall time."""
         recorder = {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(CLOCKS)}
         self.entries: dict[str, Mapping[str, str]] = {"recorder": recorder}
+        self._provenances: dict[str, str] = {}  # newest of each executive, by sender
 
     def put(self, name: str, entries: Mapping[str, str]) -> bool:
         """Set a record; False if it is unchanged."""
@@ -35,7 +39,10 @@ class RecordingMetadata:
         return True
 
     def observe(self, raw: Raw) -> bool:
-        """Keep the provenance if the message contains one; True if it changed."""
+        """Keep the provenance if the message contains one; True if it changed.
+
+        Two executives would else change it twice a second, and each change is a record that no file compresses.
+        """
         if raw.key != TOPICS["provenance"].key:
             return False
         message = decode(Provenance, raw.payload)
@@ -43,4 +50,8 @@ class RecordingMetadata:
             return False
         origin = unpack(raw.attachment)
         sender = "" if isinstance(origin, Rejected) else origin.sender
-        return self.put("provenance", {"sender": sender, "json": message.json})
+        known = self._provenances.pop(sender, None)
+        if known is None and len(self._provenances) == MAX_EXECUTIVES:
+            del self._provenances[next(iter(self._provenances))]  # the one that has been silent longest
+        self._provenances[sender] = message.json
+        return message.json != known and self.put("provenance", {"sender": sender, "json": message.json})

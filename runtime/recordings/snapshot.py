@@ -6,6 +6,7 @@ from collections import Counter, deque
 from collections.abc import Mapping
 from pathlib import Path
 
+from tailor.runtime.bus.attachment import Origin, unpack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import count_key, memory_of
 from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
@@ -64,7 +65,7 @@ class FailureDetector:
     """Detects failures in messages: an executive that enters FAULT, a driver that stops by itself."""
 
     def __init__(self) -> None:
-        self._modes: dict[str, str] = {}
+        self._modes: dict[tuple[str, str], str] = {}  # by key and sender; that of the one silent longest comes first
 
     def detect(self, raw: Raw) -> str:
         """Description of a new failure, empty if there is none."""
@@ -77,9 +78,13 @@ class FailureDetector:
     def _changed(self, raw: Raw, state: object, bad: tuple[str, ...]) -> str:
         if not isinstance(state, ExecStatus | DriverState):
             return ""
-        before = self._modes.get(raw.key)
-        if before is not None or len(self._modes) < MAX_KEYS:
-            self._modes[raw.key] = state.mode
+        origin = unpack(raw.attachment)
+        # Two executives, or drivers of one robot, are in modes of their own: one of them in FAULT is no failure again.
+        of = raw.key, origin.sender if isinstance(origin, Origin) else ""
+        before = self._modes.pop(of, None)
+        if before is None and len(self._modes) == MAX_KEYS:
+            del self._modes[next(iter(self._modes))]
+        self._modes[of] = state.mode
         if before is None or state.mode == before or state.mode not in bad:
             return ""
         cause = reason_text(state.reason, state.detail)

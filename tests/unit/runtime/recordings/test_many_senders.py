@@ -2,6 +2,7 @@
 
 import hashlib
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from mcap.reader import make_reader
@@ -16,9 +17,9 @@ from tailor.runtime.recordings.recorder import Limits, Recorder
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.recording_metadata import RecordingMetadata
 from tailor.runtime.recordings.selection import Selection
-from tailor.runtime.recordings.snapshot import SnapshotBuffer
+from tailor.runtime.recordings.snapshot import FailureDetector, SnapshotBuffer
 from tailor.schemas.codec import encode
-from tailor.schemas.messages import DriverState, Odometry
+from tailor.schemas.messages import DriverState, Odometry, Provenance
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import ros_type
 
@@ -146,3 +147,47 @@ def test_counts_that_change_for_hours_are_noted_every_ten_seconds_only(tmp_path)
     notes = [entries for name, entries in open_recording(tmp_path / "r.mcap").metadata() if name == "drops"]
     assert len(notes) == 7
     assert notes[-1] == {"some/key": "600"}
+
+
+def driver(mode, by):
+    payload = encode(replace(example(DriverState), mode=mode, reason="why"))
+    return Raw("agilo/driver", payload, pack(Origin(1, 1, sender(by))), encoding_of(DriverState), True, S)
+
+
+def test_a_stopped_driver_beside_another_one_is_one_failure():
+    """A snapshot was written every second, of 30 s each, until the disk was full."""
+    detector = FailureDetector()
+    found = [detector.detect(driver("armed", by)) for by in (1, 2)]
+    for _ in range(5):
+        found += [detector.detect(driver(mode, by)) for mode, by in (("stopped", 1), ("armed", 2))]
+    assert [each for each in found if each] == ["agilo/driver: stopped: why"]
+
+
+def test_a_failure_is_detected_after_a_flood_of_senders():
+    detector = FailureDetector()
+    for by in range(MAX_KEYS + 5):
+        assert not detector.detect(driver("armed", by))
+    assert len(detector._modes) == MAX_KEYS
+    assert detector.detect(driver("stopped", MAX_KEYS)) == "agilo/driver: stopped: why"
+
+
+def test_the_provenance_of_two_executives_is_written_once_each(tmp_path):
+    """25 MB an hour were written, and as many entries were kept in memory until the file was closed."""
+
+    def provenance(by, text):
+        payload = encode(Provenance(0, text))
+        return Raw("exec/provenance", payload, pack(Origin(1, 1, sender(by))), encoding_of(Provenance), True, S)
+
+    path = tmp_path / "r.mcap"
+    recorded(path, [provenance(by, f"of {by}") for _ in range(50) for by in (1, 2)] + [provenance(1, "anew")])
+    kept = [entries["json"] for name, entries in open_recording(path).metadata() if name == "provenance"]
+    assert kept == ["of 1", "of 2", "anew"]
+
+
+def test_a_flood_of_executives_is_not_remembered():
+    metadata = RecordingMetadata("1", 0)
+    for by in range(100):
+        metadata.observe(
+            Raw("exec/provenance", encode(Provenance(0, "x")), pack(Origin(1, 1, sender(by))), "", True, S)
+        )
+    assert len(metadata._provenances) <= 32
