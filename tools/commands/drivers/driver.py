@@ -32,7 +32,7 @@ from tailor.tools.cli.systems.endpoint import (
     sender_of,
 )
 from tailor.tools.launch.hardware import hardware_of
-from tailor.tools.launch.other_drivers import other_drivers_noted
+from tailor.tools.launch.others import other_drivers_noted
 
 EPILOG = """\
 examples:

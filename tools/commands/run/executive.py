@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from dataclasses import replace
+from functools import partial
 
 from tailor.executive.composition import build_context, provenance
 from tailor.executive.core.state import State
@@ -24,6 +25,7 @@ from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.core_source import core_source
 from tailor.schemas.ros_time import wrapped_ns
 from tailor.tools.cli.package_run import blamed_on_running_package
+from tailor.tools.cli.plain_text import note
 from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.deployment import executive_config
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_sender, open_bus, sender_of
@@ -32,6 +34,7 @@ from tailor.tools.launch.arming_advice import arming_advice
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sensor_rates_hz
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.launch.once import outcome
+from tailor.tools.launch.others import other_executives_noted
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.recordings.recorded_source import source_entry
 
@@ -79,7 +82,8 @@ def run(arguments: argparse.Namespace) -> int:
         texts = [lambda: shell.refused_fields]  # also beneath a launcher: the status does not tell it
         if print_states:
             texts.append(lambda: state_line(shell.state, context.domain.robot))
-        with blamed_on_running_package(spec_of(arguments.domain)), state_lines(*texts):
+        noted = other_executives_noted(session, partial(note, to_stderr=True))
+        with noted, blamed_on_running_package(spec_of(arguments.domain)), state_lines(*texts):
             state = shell.run(goal, lambda state: end.reached(session) or (arguments.once and _is_over(state)))
     end.check()
     if arguments.once and stop.requested and not _is_over(state):

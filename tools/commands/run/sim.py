@@ -25,7 +25,7 @@ from tailor.tools.cli.systems.bus_end import BusEnd
 from tailor.tools.cli.systems.endpoint import checked_sender, configure_bus, configure_sender, open_bus, sender_of
 from tailor.tools.cli.systems.system_flags import deployment_from
 from tailor.tools.launch.arming_advice import arming_advice
-from tailor.tools.launch.other_drivers import other_drivers_noted
+from tailor.tools.launch.others import other_drivers_noted
 from tailor.tools.launch.state_lines import state_lines
 from tailor.tools.lockstep.worlds import make_world
 
