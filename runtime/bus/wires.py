@@ -13,6 +13,7 @@ from tailor.runtime.bus.ros_wires import as_plain
 from tailor.schemas.ros2.profiles import KeyProfile
 
 MAX_PLAIN_BYTES = 1 << 20  # of a topic that is none of ours
+MAX_ATTACHMENT_BYTES = 255  # those that mean anything have 33; queues count a message by its payload
 
 
 class Subscriptions:
@@ -69,18 +70,21 @@ def raw_of(sample: zenoh.Sample, max_bytes: int | None = None) -> Raw:
     """Copy of a sample: one that waits would pin the whole batch in which it came.
 
     Of a payload above `max_bytes` only that much, and one byte, of zeros is made: whoever decodes it judges the length
-    first. Copying 200 MB takes a tick.
+    first. Copying 200 MB takes a tick. So it is with an attachment that is none of ours.
     """
     attachment, payload = sample.attachment, sample.payload
-    most = len(payload) if max_bytes is None else max_bytes
     return Raw(
         key=str(sample.key_expr),
-        payload=payload.to_bytes() if len(payload) <= most else bytes(most + 1),
-        attachment=None if attachment is None else attachment.to_bytes(),
+        payload=payload.to_bytes() if max_bytes is None else _bounded(payload, max_bytes),
+        attachment=None if attachment is None else _bounded(attachment, MAX_ATTACHMENT_BYTES),
         encoding=str(sample.encoding),
         is_put=sample.kind == zenoh.SampleKind.PUT,
         received_wall_ns=_reception_stamp(sample),
     )
+
+
+def _bounded(part: Any, most: int) -> bytes:
+    return bytes(most + 1) if len(part) > most else part.to_bytes()
 
 
 def received_raw(sample: zenoh.Sample, at_ns: int) -> Raw:
