@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
-from typing import Any
 
 from tailor.runtime.bus.inbox import by_reason
 from tailor.runtime.bus.publisher import Publisher
@@ -12,6 +10,7 @@ from tailor.runtime.bus.session import Session
 from tailor.runtime.clock import Clock, wall_ns
 from tailor.runtime.loop import Loop, Period
 from tailor.runtime.processes.notify import SILENT, Notifier
+from tailor.schemas.messages.message import stamped
 from tailor.simnodes.body import Reading
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
@@ -108,8 +107,7 @@ class Node:
         # Other ROS nodes expect wall time in a header: the world's time counts from this origin.
         origin_ns = wall_ns() - self._world.time_ns
         for reading in readings:
-            message: Any = reading.message
-            self._publisher(reading.topic).publish(replace(message, stamp_ns=origin_ns + reading.time_ns))
+            self._publisher(reading.topic).publish(stamped(reading.message, origin_ns + reading.time_ns))
 
     def _publisher(self, topic: str) -> Publisher:
         if topic not in self._publishers:  # the sensors of a body are known from their first readings

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from dataclasses import replace
+from typing import Any, ClassVar, TypeVar
 
 
 class Message:
@@ -19,3 +20,12 @@ class Message:
     ROS_TYPE: ClassVar[str] = ""
     ROS_PACKAGE: ClassVar[str] = "tailor_msgs"
     FRAME_ID: ClassVar[str] = ""
+
+
+AnyMessage = TypeVar("AnyMessage", bound=Message)
+
+
+def stamped(message: AnyMessage, stamp_ns: int) -> AnyMessage:
+    """The message with this stamp; one of a type without stamps as it is."""
+    copied: Any = message
+    return replace(copied, stamp_ns=stamp_ns) if hasattr(message, "stamp_ns") else message

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 from tailor.runtime.bus.inbox import by_reason
 from tailor.runtime.bus.session import Session
@@ -14,6 +12,7 @@ from tailor.runtime.processes.notify import SILENT, Notifier
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
+from tailor.schemas.messages.message import stamped
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
@@ -121,10 +120,10 @@ class HardwareNode:
                     self.device.fail(fault)
                     return
 
-    def _publish(self, name: str, message: Any, at_ns: int, wall: int) -> str:
+    def _publish(self, name: str, message: Message, at_ns: int, wall: int) -> str:
         """Publish a measurement; a fault if its fields hold what no message can, e.g. None where a number belongs."""
         try:
-            payload = encode(message if message.stamp_ns else replace(message, stamp_ns=wall))
+            payload = encode(message if getattr(message, "stamp_ns", 0) else stamped(message, wall))
         except Exception as error:
             return f"read: {name} cannot be encoded: {type(error).__name__}: {error}"
         self._publishers[name].publish_encoded(payload)

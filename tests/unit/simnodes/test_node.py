@@ -11,6 +11,7 @@ from tailor.runtime.bus.inbox import Inbox, Raw
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import ArmRequest, EStop, Sample, VelocityCommand
 from tailor.schemas.topics import TOPICS, key_of
+from tailor.simnodes.body import Reading
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Limit, Mode
 from tailor.simnodes.node import MAX_AT_ONCE, Node
@@ -211,3 +212,13 @@ def test_an_estop_that_follows_a_reset_wins_at_whatever_moment_of_a_period_both_
             node._run_period(node._loop.wait_for_next_period())
         node._run_period(node._loop.wait_for_next_period())
         assert node.driver.guard.mode is Mode.ESTOPPED, f"both arrived before look {moment}"
+
+
+def test_a_reading_of_a_type_without_stamps_is_published(monkeypatch):
+    """The simulator ended with a TypeError."""
+    robot = Robot()
+    published = robot.bus.publisher("estop", "")
+    monkeypatch.setattr(robot.node, "_publisher", lambda topic: published)
+    monkeypatch.setattr(robot.body, "advance", lambda duration_ns: [Reading("estop", EStop(False), 0)])
+    robot.periods(2)
+    assert published.states == [EStop(False)] * 2

@@ -397,3 +397,13 @@ def test_the_policy_ends_the_driver_after_its_attempts(robot):
 def test_pauses_between_attempts_grow_to_a_limit():
     policy = RetryPolicy(1.0, 2.0, 10.0, attempts=7)
     assert [policy.pause_s(faults) for faults in range(1, 8)] == [1.0, 2.0, 4.0, 8.0, 10.0, 10.0, None]
+
+
+def test_a_measurement_of_a_type_without_stamps_is_published(robot):
+    """It was a fault, `cannot be encoded`, so that such a robot was never ready."""
+    spec = replace(SPEC, sensors=(*SPEC.sensors, SensorSpec("estop", 0.0)))  # of those that ship, the one without
+    driven = robot(Faulty(), spec=spec)
+    driven.hardware.odometry = {"odom": Odometry(0, *[0.0] * 5), "estop": EStop(False)}
+    wait_until(lambda: driven.bus.published["estop"], "published", 5)
+    assert driven.bus.published["estop"][-1] == EStop(False)
+    assert not driven.node.device.fault
