@@ -118,6 +118,9 @@ class Result(StrEnum):
     CANCELLED = "cancelled"
 
 
+MAX_DETAIL_BYTES = 2000  # in a message: a status has two details, and may have a goal of 8000 bytes beside them
+
+
 @dataclass(frozen=True, slots=True)
 class Cause:
     """A reason with its detail; as text "reason: detail"."""
@@ -128,3 +131,8 @@ class Cause:
     def __str__(self) -> str:
         """The reason, and the detail if there is one."""
         return reason_text(self.reason, self.detail)
+
+    @property
+    def told(self) -> str:
+        """The detail as messages carry it: text on the bus, short enough for every topic; packages write some."""
+        return self.detail.encode(errors="backslashreplace")[:MAX_DETAIL_BYTES].decode(errors="ignore")

@@ -10,10 +10,14 @@ import pytest
 from tailor.executive.core.action_cycle import MAX_FAILURES
 from tailor.executive.core.effects import MAX_SUBGOALS, MAX_UNCONFIRMED
 from tailor.executive.core.modes import Mode
+from tailor.executive.deliberation.context import MAX_GOAL_BYTES
 from tailor.executive.interfaces.action import Control
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.schemas.codec import decode, encode
+from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ActionFinished
+from tailor.schemas.topics import TOPICS
 from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context, slide
 from tests.unit.executive.core.test_core import TICK, drive, messages
 
@@ -51,6 +55,23 @@ def test_failures_that_each_name_another_value_are_a_fault_in_the_end():
     finished = messages(run, ActionFinished)
     assert len(finished) == len({f.detail for f in finished}) == MAX_FAILURES
     assert run[-1][0].mode is Mode.FAULT
+
+
+@pytest.mark.parametrize("text", ["x" * 20_000, "\u20ac" * 20_000, "a path \udcff"])
+def test_a_cause_that_no_message_can_hold_is_cut(text):
+    """The status of a fault was longer than its topic allows: nobody heard the executive any more."""
+
+    class Verbose(Complaining):
+        def give_up(self, state, now_ns, belief, arguments):
+            return Control(state, (0.0,), "failed", text)
+
+    run = list(drive(of(Verbose()), goal="(visited a)" + " " * (MAX_GOAL_BYTES - 11), ticks=30))
+    assert run[-1][0].mode is Mode.FAULT
+    sent = [output for _, outputs, _ in run for output in outputs]
+    assert {"status", "finished"} <= {output.topic for output in sent}
+    for output in sent:
+        assert not isinstance(decode(TOPICS[output.topic], encode(output.message)), Rejected)
+    assert messages(run, ActionFinished)[-1].detail[:6] == text[:6]
 
 
 class Stuck(LineDomain):
