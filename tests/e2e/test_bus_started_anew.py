@@ -1,14 +1,17 @@
-"""A bus that was started anew has new passwords: a robot's processes end with a line that says so, scenes go on."""
+"""A bus that was started anew has new passwords: a robot's processes end with a line that says so, others go on."""
 
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
 
 from tailor.runtime.bus.opening import open_local_router
+from tailor.runtime.bus.rights.credentials import Password
+from tailor.runtime.bus.session import CannotOpenError, opened
+from tailor.runtime.bus.zenoh_config import client
 from tailor.runtime.processes.child import Child, tailor
 from tailor.runtime.recordings.recording import open_recording
-from tailor.schemas.messages import ArmRequest, VelocityCommand
+from tailor.schemas.messages import ArmRequest, EStop, VelocityCommand
 from tailor.tools.launch.hosting import free_endpoint
 from tailor.tools.main import TRY_AGAIN
 from tests.support.patience import PATIENCE_S, wait_until
@@ -111,3 +114,24 @@ def test_scenes_of_the_next_run_are_published(system):
     bus.close()
     session, _ = bus.enter_context(open_local_router(endpoint))
     wait_until(scene_of(session), "scene of the next run")
+
+
+def test_an_estop_from_outside_reaches_the_next_run(system):
+    """A gateway that people had started stayed cut off: `no driver is on the bus`, for good."""
+    endpoint, bus, start, _ = system
+    outside = free_endpoint()
+
+    def let_in(folder):
+        with suppress(CannotOpenError):
+            return sessions.enter_context(opened(client([outside], 500, Password("people", folder.password("people")))))
+
+    for run in (1, 2):
+        session, folder = bus.enter_context(open_local_router(endpoint))
+        stops = session.inbox(["estop"], "")
+        if run == 1:
+            start(("gateway", "--listen", outside))
+        with ExitStack() as sessions:
+            people = wait_until(lambda folder=folder: let_in(folder), "session")
+            button = people.publisher("estop", "")
+            wait_until(lambda button=button, stops=stops: button.publish(EStop(True)) and stops.drain(), "e-stop")
+        bus.close()

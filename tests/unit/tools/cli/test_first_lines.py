@@ -26,6 +26,7 @@ def opening_nothing(monkeypatch, command, supervised):
         "open_run": lambda *_: nullcontext(SimpleNamespace(session=None)),
         "publish_scenes": lambda *_: None,
         "opened_anew": lambda *_: None,
+        "BusRenewal": lambda _: None,
         "codec": SimpleNamespace(prime=lambda: None),
         "set_for_host": lambda: None,
         "stop_on_signals": lambda: STOPPED,
