@@ -26,6 +26,7 @@ from tailor.tools.gym.spaces import (
     clipped,
     command_space,
     numbers,
+    only_option,
     width,
 )
 from tailor.tools.lockstep.action_run import PERIOD_NS, TIME_LIMIT_S
@@ -92,11 +93,11 @@ class ActionEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           options: `arguments` of the controller, shape (k,), instead of those that are drawn.
 
         Raises:
-          UsageError: The given arguments are not finite numbers of that shape, or the action ends at once, in each of
-            MAX_DRAWS draws.
+          UsageError: There is another option, or the given arguments are not finite numbers of that shape, or the
+            action ends at once, in each of MAX_DRAWS draws.
         """
         super().reset(seed=seed)
-        given = (options or {}).get("arguments")
+        given = only_option(options, "arguments")
         arguments = None if given is None else checked_arguments(self._action, given)
         for _ in range(MAX_DRAWS):
             rng = np.random.default_rng(self.np_random.integers(2**63, size=2))

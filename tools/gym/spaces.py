@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -89,3 +90,15 @@ def padded(values: Any, length: int) -> Array:
     row = np.zeros(length)
     row[: len(values)] = values
     return row
+
+
+def only_option(options: Mapping[str, Any] | None, name: str) -> Any:
+    """Value of the one option that `reset` takes, or None.
+
+    Raises:
+      UsageError: There are others: a misspelt one would draw at random what it was to set.
+    """
+    given = options or {}
+    if unknown := [each for each in given if each != name]:
+        raise UsageError(f"options of reset: unknown {', '.join(map(repr, unknown))}, expected {name!r} or none")
+    return given.get(name)

@@ -27,7 +27,17 @@ from tailor.executive.robot_models import load_models
 from tailor.schemas.errors import UsageError
 from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.world import World
-from tailor.tools.gym.spaces import Command, believed, checked_limit, clipped, command_space, numbers, padded, width
+from tailor.tools.gym.spaces import (
+    Command,
+    believed,
+    checked_limit,
+    clipped,
+    command_space,
+    numbers,
+    only_option,
+    padded,
+    width,
+)
 from tailor.tools.lockstep.driver_link import DriverLink
 from tailor.tools.lockstep.run import CHECKS_PER_TICK, SENDER
 from tailor.tools.lockstep.worlds import events_of, make_world
@@ -98,10 +108,11 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
           options: `seed` of the scenario, instead of one that is drawn.
 
         Raises:
-          UsageError: The given seed is no whole number from 0 up; or no action starts, in none of MAX_DRAWS draws.
+          UsageError: There is another option, or the given seed is no whole number from 0 up; or no action starts, in
+            none of MAX_DRAWS draws.
         """
         super().reset(seed=seed)
-        given = (options or {}).get("seed")
+        given = only_option(options, "seed")
         if given is not None and (not isinstance(given, int | np.integer) or given < 0):
             raise UsageError(f"seed of the scenario is {given!r}, expected a whole number, at least 0")
         for _ in range(MAX_DRAWS):

@@ -205,3 +205,17 @@ def test_arguments_that_are_none_of_the_action_are_refused(arguments):
 def test_a_scenario_s_seed_that_is_none_is_refused(seed):
     with pytest.raises(UsageError, match=r"seed of the scenario is .*, expected a whole number, at least 0"):
         make("tailor/arm-v0").reset(options={"seed": seed})
+
+
+@pytest.mark.parametrize(
+    ("env", "options", "expected"),
+    [
+        ("tailor-action/arm-v0", {"argument": [0.0] * 10}, "arguments"),
+        ("tailor/arm-v0", {"seed": 1, "goal": ""}, "seed"),
+    ],
+)
+def test_an_option_of_reset_that_is_none_is_refused(env, options, expected):
+    """A misspelt one was ignored, and what it was to set was drawn."""
+    unknown = next(name for name in options if name != "seed")
+    with pytest.raises(UsageError, match=f"options of reset: unknown '{unknown}', expected '{expected}' or none"):
+        make(env).reset(options=options)
