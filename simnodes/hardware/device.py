@@ -41,13 +41,14 @@ class Device:
 
     Attributes:
       phase: What it is doing.
+      opening: Number of the newest opening.
       fault: First fault since the newest opening that had any, one line; empty since the hardware runs again.
       notice: The hardware's notice at its newest `read`, one line.
     """
 
     def __init__(self, hardware: Hardware, limits: Sequence[Limit], retry: RetryPolicy, clock: Clock) -> None:
         """Nothing is called before `start`; the limits name the axes that keep their set-points at standstill."""
-        self.phase, self.fault, self.notice = Phase.OPENING, "", ""
+        self.phase, self.opening, self.fault, self.notice = Phase.OPENING, 0, "", ""
         self._hardware, self._retry, self._clock = hardware, retry, clock
         limits_s = {"open": hardware.open_s, "read": hardware.read_s, "write": hardware.write_s, "close": CLOSE_S}
         self._calls = Calls(clock, limits_s)
@@ -59,6 +60,7 @@ class Device:
         self._follows = any(self._keeps) and type(hardware).kept is not Hardware.kept
         self._awaits_kept = self._follows  # the present set-points would move such an axis, e.g. close an open gripper
         self._at_rest = True  # nothing was written, or standstill last
+        self._handing = threading.Lock()  # held for microseconds
         self._ended, self._broken = threading.Event(), threading.Event()
         self._faults, self._opened_ns, self._closed, self._failed = 0, 0, False, False
         self._main = threading.Thread(target=self._live, name="hardware", daemon=True)
@@ -87,16 +89,19 @@ class Device:
         kept = self._kept
         return None if kept is None else lambda: kept
 
-    def hand(self, values: tuple[float, ...], now_ns: int, may_move: bool = True) -> None:
+    def hand(self, values: tuple[float, ...], now_ns: int, may_move: bool = True, opening: int | None = None) -> None:
         """Set the set-points that are written from now on.
 
         Args:
           values: Set-points.
           now_ns: Monotonic time.
           may_move: Whether an axis that keeps its set-point may move by them: the robot is armed, or stays as it is.
+          opening: For which they were made; those for one of before are dropped. None: the newest.
         """
-        self._values, self._handed_ns = values, now_ns
-        self._awaits_kept = self._awaits_kept and not may_move
+        with self._handing:
+            if opening in (None, self.opening):
+                self._values, self._handed_ns = values, now_ns
+                self._awaits_kept = self._awaits_kept and not may_move
 
     def fail(self, fault: str) -> None:
         """A watchdog of the loop found a fault."""
@@ -140,9 +145,11 @@ class Device:
 
     def _work(self) -> None:
         self.fault = self.notice = ""
-        self._values = self._standstill()  # nothing from before the fault, should the loop hang
-        self._handed_ns = self._clock.now_ns()
-        self._kept, self._awaits_kept = None, self._follows and self._at_rest  # to stop the robot comes first
+        with self._handing:
+            self.opening += 1
+            self._values = self._standstill()  # nothing from before the fault, should the loop hang
+            self._handed_ns = self._clock.now_ns()
+            self._kept, self._awaits_kept = None, self._follows and self._at_rest  # to stop the robot comes first
         self._readings.clear()
         self.phase = Phase.RUNNING
         threads = [threading.Thread(target=each, daemon=True) for each in (self._read, self._write)]

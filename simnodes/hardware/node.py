@@ -173,8 +173,8 @@ class HardwareNode:
         self._report(f"not ready: {unready}" if unready else "ready")
 
     def _hand(self, now_ns: int) -> None:
-        kept, armed = self.device.kept, self.driver.guard.mode is Mode.ARMED
-        self.device.hand(self.driver.set_points(now_ns, kept), now_ns, armed or kept is not None)
+        opening, kept, armed = self.device.opening, self.device.kept, self.driver.guard.mode is Mode.ARMED
+        self.device.hand(self.driver.set_points(now_ns, kept), now_ns, armed or kept is not None, opening)
 
     def _publish_state(self, now_ns: int) -> None:
         state = self.driver.state(now_ns, wall_ns())

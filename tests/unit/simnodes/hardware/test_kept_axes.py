@@ -1,6 +1,7 @@
 """An axis that keeps its set-point, such as a gripper, is moved by nobody but an armed executive."""
 
 import math
+import threading
 from dataclasses import replace
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from tailor.schemas.messages import ArmRequest, EStop, VelocityCommand
 from tailor.simnodes.driver_spec import DriverSpec, SensorSpec
 from tailor.simnodes.guard import Limit
+from tailor.simnodes.hardware.device import Phase
 from tests.support.patience import wait_until
 from tests.unit.simnodes.hardware.faulty import Faulty
 from tests.unit.simnodes.hardware.test_hardware_node import EXECUTIVE, PERSON, robot  # noqa: F401
@@ -74,6 +76,32 @@ def test_nothing_is_written_before_it_is_known_how_wide_a_gripper_is_also_after_
     assert len(hardware.written) - written <= 1, "at most that of the last fault"
     hardware.width = 0.06
     wait_until(lambda: hardware.written[-1] == (0.0, 0.06), "the width of now", 5)
+
+
+@pytest.mark.promise("P66")
+def test_set_points_of_before_a_fault_move_no_gripper_that_people_have_moved_since(robot):  # noqa: F811
+    """The loop was about to hand them on when the hardware was opened again, and the gripper went to its old width."""
+    hardware = Gripping(0.08)
+    driven = robot(hardware, spec=SPEC)
+    wait_until(lambda: hardware.written, "set-points", 5)
+    device, set_points, opened = driven.node.device, driven.node.driver.set_points, threading.Event()
+
+    def slow(now_ns, kept):
+        made = set_points(now_ns, kept)
+        if hardware.width is None and kept is not None and not opened.is_set():
+            hardware.raises = {"read"}
+            wait_until(lambda: device.fault, "fault", 5)
+            hardware.raises, first = set(), device.opening
+            wait_until(lambda: device.opening > first and device.phase is Phase.RUNNING, "opened again", 5)
+            opened.set()
+        return made
+
+    driven.node.driver.set_points = slow
+    hardware.width = None
+    assert opened.wait(10)
+    written, reads = len(hardware.written), hardware.calls["read"]
+    wait_until(lambda: hardware.calls["read"] > reads + 5, "measurements", 5)
+    assert hardware.written[written:] == []
 
 
 def test_a_robot_that_could_not_be_stopped_is_stopped_before_that_is_known(robot):  # noqa: F811
