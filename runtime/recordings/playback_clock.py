@@ -32,6 +32,10 @@ class PlaybackClock:
             return None
         return self._at_ns + round((recorded_ns - self._recorded_ns) / self.rate)
 
+    def jump(self, recorded_ns: int, now_ns: int) -> None:
+        """Go on from another recorded time."""
+        self._recorded_ns, self._at_ns = recorded_ns, now_ns
+
     def toggle(self, now_ns: int) -> None:
         """Pause or resume."""
         self._rebase(now_ns)
@@ -55,4 +59,4 @@ class PlaybackClock:
         self.rate = min(max(self.rate * factor, MIN_RATE), MAX_RATE)
 
     def _rebase(self, now_ns: int) -> None:
-        self._recorded_ns, self._at_ns = self.recorded_ns(now_ns), now_ns
+        self.jump(self.recorded_ns(now_ns), now_ns)

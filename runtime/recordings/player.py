@@ -13,6 +13,7 @@ from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.recording import Recorded
 
 MAX_LATENESSES = 100_000  # of the newest messages: a repeated playback has no end
+SET_BACK_NS = 10_000_000_000  # from a message to the next; other recorders write some in another order
 SLICE_NS = 20_000_000  # longest sleep between two polls of the keyboard
 
 
@@ -50,8 +51,15 @@ class Player:
         self._tick, self._tick_ns, self._next_tick_ns = tick, tick_ns, 0
 
     def play(self, messages: Iterable[Recorded], playback: PlaybackClock) -> bool:
-        """Publish the messages in order; False if `watch` ended the playback."""
+        """Publish the messages in order; False if `watch` ended the playback.
+
+        Where the recorder's clock was set back, recorded time goes on from there: all that follows would else be due.
+        """
+        before_ns = 0
         for recorded in messages:
+            if recorded.log_ns < before_ns - SET_BACK_NS:
+                playback.jump(recorded.log_ns, self._clock.now_ns())
+            before_ns = recorded.log_ns
             if not self._wait(recorded.log_ns, playback):
                 return False
             self._send(recorded)

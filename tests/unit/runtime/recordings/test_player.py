@@ -5,7 +5,7 @@ import pytest
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.playback_clock import PlaybackClock
 from tailor.runtime.recordings.player import Player
-from tailor.runtime.recordings.recording import open_recording
+from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.runtime.recordings.selection import selection
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
@@ -101,6 +101,17 @@ def test_the_watch_function_may_end_a_replay(tmp_path):
     assert len(sent) < 10
 
 
+def test_a_clock_that_was_set_back_while_it_was_recorded_ends_no_interval():
+    """All that followed was sent at once: of a clock that was set back by an hour, the rest of a run."""
+    times_s = [5000, 5001, 1401, 1402, 1403, 1402.5, 1404]
+    clock = SteppedClock(7)
+    publisher = FakePublisher(clock)
+    player = Player(publisher, clock, lambda playback: True)
+    messages = [Recorded("agilo/odom", "", "", n, round(at_s * S), 0, b"") for n, at_s in enumerate(times_s)]
+    assert player.play(messages, PlaybackClock(5000 * S, clock.now_ns()))
+    assert [(at - 7) / S for at, *_ in publisher.sent] == [0, 1, 1, 2, 3, 3, 4]
+
+
 def test_remap_words_are_checked():
     assert remapping(["a/b=c/d"]) == {"a/b": "c/d"}
     with pytest.raises(UsageError, match="--remap a/b"):
@@ -120,8 +131,6 @@ def test_a_key_that_is_not_recorded_is_not_replaced_in_silence(tmp_path):
 
 def test_a_recorded_driver_appears_to_obey_the_live_executive(tmp_path):
     from dataclasses import replace
-
-    from tailor.runtime.recordings.recording import Recorded
 
     state = replace(example(DriverState), mode="armed", armed_sender="a" * 32)
     recorded = Recorded("agilo/driver", "tailor_msgs/msg/DriverState", "", 1, 0, 0, encode(state))
