@@ -45,17 +45,25 @@ def hosted(endpoint: str, users: Sequence[str], keys: KeyProfile = PLAIN) -> Ite
     lock = folder.path / LOCK
     with _locked(lock, endpoint) as held, _kept_from_cleaners(folder.path):
         try:
-            _empty(folder.path)
-            _write_secret(folder.path / PROFILE, [f"{keys.profile} {keys.domain}"])
-            if users:
-                _write_secret(folder.users_file, [f"{user}:{secrets.token_hex(16)}" for user in users])
-                _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])
+            _fill(folder, users, keys)
             yield folder
         finally:
             if _is_at(held, lock):
                 _empty(folder.path)
     with suppress(OSError):  # the next bus at this endpoint has made it again
         folder.path.rmdir()
+
+
+def _fill(folder: RunFolder, users: Sequence[str], keys: KeyProfile) -> None:
+    """Write what sessions read, in the place of what a bus that was killed has left there."""
+    try:
+        _empty(folder.path)
+        _write_secret(folder.path / PROFILE, [f"{keys.profile} {keys.domain}"])
+        if users:
+            _write_secret(folder.users_file, [f"{user}:{secrets.token_hex(16)}" for user in users])
+            _write_secret(folder.certificate_users_file, [CERTIFICATE_USER])
+    except OSError as error:  # e.g. a full disk
+        raise UsageError(f"{folder.path}: {error.strerror}, expected a place for passwords, see {VARIABLE}") from error
 
 
 def _check_socket(path: Path) -> None:

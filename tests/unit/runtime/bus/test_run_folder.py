@@ -1,5 +1,6 @@
 """The folder of a bus: its passwords are of one run, and only the user who started it reads them."""
 
+import errno
 import fcntl
 import os
 import shutil
@@ -11,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+from tailor.runtime.bus.rights import hosted_folder
 from tailor.runtime.bus.rights import run_folder as module
 from tailor.runtime.bus.rights.folder_watch import RunFolderWatch
 from tailor.runtime.bus.rights.hosted_folder import hosted
@@ -53,6 +55,22 @@ def test_the_group_of_a_service_may_read_them(tmp_path, monkeypatch):
     with hosted(ENDPOINT, ["people"]) as folder:
         assert folder.path.parent == tmp_path / "s"
         assert (mode(folder.path), mode(folder.users_file)) == (0o750, 0o640)
+
+
+def test_a_full_disk_is_named_with_its_folder(monkeypatch):
+    """`tailor bus: No space left on device`: of which disk?"""
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(hosted_folder, "_write_secret", full)
+    with (
+        pytest.raises(UsageError, match=r"tailor/tcp-127.0.0.1-7999: No space left on device, expected a place for "),
+        hosted(ENDPOINT, ["people"]),
+    ):
+        raise AssertionError("it began")
+    monkeypatch.undo()
+    assert not (run_folder(ENDPOINT).path / LOCK).exists()
 
 
 def cleaned(folder):
