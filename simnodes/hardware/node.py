@@ -13,6 +13,7 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Message
 from tailor.schemas.messages.message import stamped
+from tailor.schemas.reason_text import without_numbers
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
@@ -159,8 +160,8 @@ class HardwareNode:
             unready = f"no {missing} yet" if missing else ""
         self._note(unready, bool(device.fault))
         if device.notice != self.driver.notice:
-            self.driver.notice = device.notice
-            if device.notice:
+            known, self.driver.notice = self.driver.notice, device.notice
+            if device.notice and without_numbers(device.notice) != without_numbers(known):  # a voltage changes always
                 self._report(device.notice)
 
     def _note(self, unready: str, is_fault: bool) -> None:

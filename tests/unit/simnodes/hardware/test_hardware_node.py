@@ -407,3 +407,22 @@ def test_a_measurement_of_a_type_without_stamps_is_published(robot):
     wait_until(lambda: driven.bus.published["estop"], "published", 5)
     assert driven.bus.published["estop"][-1] == EStop(False)
     assert not driven.node.device.fault
+
+
+def test_a_notice_is_printed_again_only_where_more_than_its_numbers_has_changed(robot):
+    """A voltage filled the log of a driver with fifty lines a second."""
+    driven = robot()
+    hardware, shown = driven.hardware, set()
+    wait_until(lambda: "ready" in driven.reports, "ready", 5)
+
+    def tells(text):
+        def told():
+            hardware.notice = text.format(11.0 + 0.01 * len(shown))
+            shown.add(driven.node.driver.notice)
+            return len([each for each in shown if each.startswith(text[:7])]) > 3
+
+        wait_until(told, "notices in the driver's state", 5)
+
+    tells("battery {:.2f} V")
+    tells("voltage {:.2f} V")
+    assert [line[:7] for line in driven.reports if line.endswith("V")] == ["battery", "voltage"]
