@@ -15,6 +15,7 @@ from rich.table import Table
 from tailor.executive.planning import Problem, Result, validate
 from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.executive.planning.plan_quality import total_cost
+from tailor.runtime.planners.named import check_engine
 from tailor.tools.plan_search.sources import external
 
 
@@ -23,7 +24,7 @@ class Row:
     """What one planner found.
 
     `makespan` in seconds, None without durations; `cost` is what the steps add to (total-cost), None without costs.
-    Both times include the start of a program; `reason` states why there is no sound plan.
+    Both times include the start of that planner's program; `reason` states why there is no sound plan.
     """
 
     planner: str
@@ -36,8 +37,20 @@ class Row:
     reason: str
 
 
+@dataclass(frozen=True, slots=True)
+class _Moment:
+    """CPU time of this process and of its children that have ended, and time on a monotonic clock, both in seconds."""
+
+    cpu_s: float
+    wall_s: float
+
+    def after(self, earlier: _Moment) -> _Moment:
+        """What has passed since an earlier one."""
+        return _Moment(self.cpu_s - earlier.cpu_s, self.wall_s - earlier.wall_s)
+
+
 def compare(
-    name: str,
+    external_name: str,
     ours: Callable[[], Result],
     commands: Sequence[str],
     texts: tuple[str, str],
@@ -47,7 +60,7 @@ def compare(
     """One row for the planner of the options, then one for each other.
 
     Args:
-      name: That planner.
+      external_name: That planner, if it is an external one; else empty.
       ours: Plans with it, within the limits of the options.
       commands: External planners as for `--planner`.
       texts: PDDL of domain and problem, for external planners.
@@ -55,49 +68,51 @@ def compare(
       limit_s: Wall time of each external planner.
 
     Raises:
-      UsageError: A command cannot be started.
+      UsageError: A command cannot be started, or names no engine.
     """
-    row = _row(name, ours, problem, since_start=True)
+    before = _now()
+    for command in (external_name, *commands):
+        check_engine(command)
+    spent_on_checks = _now().after(before)
+    begun = _now() if external_name else _Moment(spent_on_checks.cpu_s, _started_s() + spent_on_checks.wall_s)
+    row = _row(external_name or "tailor", ours, problem, begun)
     plans = (partial(external, name, texts, problem.domain, problem, limit_s) for name in commands)
-    return [row, *(_row(name, plan, problem) for name, plan in zip(commands, plans, strict=True))]
+    return [row, *(_row(name, plan, problem, _now()) for name, plan in zip(commands, plans, strict=True))]
 
 
-def _row(name: str, plan: Callable[[], Result], problem: Problem, since_start: bool = False) -> Row:
-    """The figures of one planner; `since_start` counts what this process did before, its start and reading."""
-    before_s = 0.0 if since_start else _cpu_s()
-    began = time.monotonic() - (_age_s() if since_start else 0.0)
+def _row(name: str, plan: Callable[[], Result], problem: Problem, begun: _Moment) -> Row:
+    """The figures of one planner."""
     result = plan()
-    wall_s, cpu_s = time.monotonic() - began, _cpu_s() - before_s
-    found = result.plan
+    used = _now().after(begun)
+    found, times = result.plan, (round(used.cpu_s, 3), round(used.wall_s, 3))
     fault = result.reason if found is None else validate(found, problem.domain, problem)
     if found is None:
-        return Row(name, None, None, None, round(cpu_s, 3), round(wall_s, 3), False, fault)
+        return Row(name, None, None, None, *times, False, fault)
     costly = any(action.cost is not None for action in problem.domain.actions)
     return Row(
         name,
         len(found.steps),
         found.makespan if found.durative else None,
         total_cost(found, problem) if costly and not fault else None,
-        round(cpu_s, 3),
-        round(wall_s, 3),
+        *times,
         not fault,
         fault,
     )
 
 
-def _age_s() -> float:
-    """Wall time since this process started; where Linux does not tell, its CPU time, which is a little less."""
+def _now() -> _Moment:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return _Moment(time.process_time() + used.ru_utime + used.ru_stime, time.monotonic())
+
+
+def _started_s() -> float:
+    """When this process started, on the monotonic clock; where Linux does not tell, later by what it waited."""
     try:
         started_ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
-        return time.clock_gettime(time.CLOCK_BOOTTIME) - started_ticks / os.sysconf("SC_CLK_TCK")
+        age_s = time.clock_gettime(time.CLOCK_BOOTTIME) - started_ticks / os.sysconf("SC_CLK_TCK")
     except (OSError, AttributeError):
-        return time.process_time()
-
-
-def _cpu_s() -> float:
-    """CPU time of this process and of its children that have ended."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return time.process_time() + used.ru_utime + used.ru_stime
+        age_s = time.process_time()
+    return time.monotonic() - age_s
 
 
 def table(rows: Sequence[Row], problem: str) -> Table:

@@ -12,6 +12,7 @@ import json
 import math
 import sys
 import time
+from functools import partial
 
 from tailor.executive.planning import Domain, Problem, Result, Unsupported, parse_domain, parse_problem, validate
 from tailor.runtime.planners.named import check_engine, kairos_command, kairos_installed
@@ -39,10 +40,9 @@ def run(args: argparse.Namespace) -> int:
         if args.json:
             print(json.dumps(as_json(Result("unsupported", None, str(feature), 0, 0), args.files[-1].stem, 0.0)))
         raise
-    for command in (args.planner or "", *args.compare):
-        check_engine(command)
     if args.compare:
         return _compare(args, texts, domain, problem)
+    check_engine(args.planner or "")
     result = _validated(_plan(args, texts, domain, problem), domain, problem)
     cpu_ms = (time.process_time() - started) * 1e3
     if args.verbose:
@@ -62,8 +62,8 @@ def _compare(args: argparse.Namespace, texts: tuple[str, str], domain: Domain, p
             raise UsageError(f"--compare prints figures, as a table or --json, and no plan: leave out --{form}")
     if args.time_limit is None:
         args.time_limit = 1.0
-    name, limit_s = args.planner or "tailor", 60.0 * args.time_limit
-    rows = compare(name, lambda: _plan(args, texts, domain, problem), args.compare, texts, problem, limit_s)
+    plan, limit_s = partial(_plan, args, texts, domain, problem), 60.0 * args.time_limit
+    rows = compare(args.planner or "", plan, args.compare, texts, problem, limit_s)
     if args.json:
         print(json.dumps([dataclasses.asdict(row) for row in rows]))
     else:

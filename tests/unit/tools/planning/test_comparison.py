@@ -9,6 +9,7 @@ import time
 import pytest
 
 from tailor.tools.main import main
+from tailor.tools.planning import comparison
 from tests.support.planning.planning_problems import DATA, printed
 
 OWN = DATA / "own"
@@ -65,12 +66,20 @@ def test_times_of_ours_include_its_start_as_those_of_others_do():
     assert rows[0]["wall_s"] + rows[1]["wall_s"] <= whole + 0.02
 
 
+def test_what_checking_the_others_takes_is_not_counted_as_ours(capsys, monkeypatch):
+    busy = [sys.executable, "-c", "import time\nwhile time.process_time() < 1: pass"]
+    alone = compared(capsys, KITCHEN, printing(""))[1][0]
+    monkeypatch.setattr(comparison, "check_engine", lambda command: subprocess.run(busy, check=True))
+    assert compared(capsys, KITCHEN, printing(""))[1][0]["cpu_s"] < alone["cpu_s"] + 0.5
+
+
 def test_the_first_planner_is_the_one_of_the_options(capsys):
     _, rows = compared(
         capsys, KITCHEN, printing(""), options=("--planner", printing(printed("kitchen-s1.ground.plain")))
     )
     assert rows[0]["planner"] == printing(printed("kitchen-s1.ground.plain"))
     assert rows[0]["valid"]
+    assert rows[0]["cpu_s"] < 0.5 * time.process_time()  # without the start of this process
 
 
 @pytest.mark.parametrize(
