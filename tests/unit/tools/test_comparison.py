@@ -288,6 +288,18 @@ def test_the_name_of_a_recording_controls_no_terminal(command, tmp_path, capsys)
     assert "\x1b" not in out
 
 
+def test_choices_that_differ_by_the_sign_of_zero_are_one(tmp_path, capsys):
+    script = Script(tmp_path / "a.mcap")
+    for tick, rad in enumerate((0.001, -0.001), start=1):
+        aside = Parameter("aside", 1, "spot", "rad", False, -0.3, 0.3, rad)
+        grip = InstantiatedAction("grip", 1, False, 1.0, 0.0, (aside,))
+        script.say(tick * 100, "exec/tick", replace(example(TickReport), tick=tick))
+        script.say(tick * 100, "exec/subgoals", replace(example(Subgoals), actions=(grip,)))
+    path = script.close()
+    assert main(["compare", path, path]) == 0
+    assert capsys.readouterr().out.count("grip.aside") == 2  # once for each of both runs
+
+
 def test_different_runs_are_distinguished(tmp_path, capsys):
     first, second = a_run(tmp_path / "a.mcap"), a_run(tmp_path / "b.mcap", speed=0.25, slower_ms=500)
     code, comparison = json_of(capsys, "compare", first, second)

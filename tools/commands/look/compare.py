@@ -116,7 +116,7 @@ def _brief(action: ActionFinished) -> str:
 
 def _changes(run: ComparedRun) -> list[str]:
     """Chosen subgoals without repetitions."""
-    return _distinct([", ".join(f"{name} {value:.2f}" for name, value in chosen(s).items()) for s in run.subgoals])
+    return _distinct([", ".join(f"{name} {value:z.2f}" for name, value in chosen(s).items()) for s in run.subgoals])
 
 
 def _steps(plan: PlanReport) -> str:
