@@ -6,6 +6,7 @@
 import gc
 import os
 import signal
+from functools import lru_cache, partial
 from pathlib import Path
 
 import pytest
@@ -22,9 +23,21 @@ os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onn
 
 WAITING = {Path(__file__).with_name(name) for name in ("e2e", "faults")}  # folders of tests that start processes
 
+unfrozen = []  # not empty: the test that runs has unfrozen all objects
+
 settings.register_profile("explore", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile("repeat", settings.get_profile("explore"), derandomize=True)
 settings.load_profile("repeat")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shared_sessions():
+    """A model's bytes are opened once a worker: a session keeps nothing of a call, and many tests load what ships."""
+    from tailor.models import runtime
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runtime, "open_session", lru_cache(maxsize=100)(runtime.open_session))
+        yield
 
 
 @pytest.fixture
@@ -55,6 +68,22 @@ def pytest_collection(session):
 def pytest_collection_finish(session):
     gc.enable()
     gc.freeze()
+    gc.unfreeze = partial(_unfreeze, gc.unfreeze)
+
+
+def _unfreeze(unfreeze):
+    """Noted, as `gc.get_freeze_count` visits each frozen object: 50 ms for each test."""
+    unfreeze()
+    unfrozen.append(True)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_teardown(item):
+    """What a test has frozen for itself it has unfrozen with all the others: freeze them again."""
+    yield
+    if unfrozen:
+        gc.freeze()
+        unfrozen.clear()
 
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the marks in its own
