@@ -33,8 +33,13 @@ def models() -> Models:
 
 
 @pytest.fixture(scope="module")
-def tasks(models) -> list[Case]:
-    drawn = cases(models, TASKS)
+def drawn(models) -> dict[str, list[Case]]:
+    """Drawn once: before a subgoal is asserted, many approaches are tried."""
+    return cases(models, TASKS)
+
+
+@pytest.fixture(scope="module")
+def tasks(drawn) -> list[Case]:
     return [task for name in ("2 free", "4 free", "5 free, subgoal") for task in drawn[name]]
 
 
@@ -114,9 +119,9 @@ def searched_and_proven(cost, chosen, checks: int = 45) -> tuple[Any, Certificat
     return solver, proof
 
 
-def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models):
+def test_slopes_of_neighbouring_actions_cancel_so_that_four_subgoals_are_certified_in_few_checks(models, drawn):
     chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
-    cost = cases(models, 2)["8 free"][1].objective(models, chosen)
+    cost = drawn["8 free"][1].objective(models, chosen)
     _, proof = searched_and_proven(cost, chosen)
     assert proof.gap_pct is not None
     assert proof.gap_pct <= 5.0 + 1e-9
@@ -155,15 +160,15 @@ def test_stages_bound_a_single_choice_as_tightly_as_any_model_permits(models, ta
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, seed):
+def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, drawn, seed):
     rng = np.random.default_rng(seed)
-    cost = cases(models, 1)["8 free"][0].objective(models, RefinementSettings())
+    cost = drawn["8 free"][0].objective(models, RefinementSettings())
     blocks = blocks_of(cost.stages)
     assert blocks is not None
     boxes = [NO_PARAMETERS.part(np.zeros(3, np.intp))]
     for block in blocks:
-        drawn = [drawn_boxes(cost.ranges.part(block), rng) for _ in range(3)]
-        boxes.append(Boxes(*(np.array(ends) for ends in zip(*drawn, strict=True))))
+        each = [drawn_boxes(cost.ranges.part(block), rng) for _ in range(3)]
+        boxes.append(Boxes(*(np.array(ends) for ends in zip(*each, strict=True))))
     bounds = [
         stage_bound(stage, link, RefinementSettings())
         for stage, link in zip(cost.stages, links_of(cost.stages, blocks), strict=True)
@@ -177,9 +182,9 @@ def test_actions_bounded_in_one_call_have_the_bounds_of_each_alone(models, seed)
 
 
 @pytest.mark.parametrize("task", range(TASKS))
-def test_no_choice_costs_less_than_a_proof_with_models_that_ship_states(models, task):
+def test_no_choice_costs_less_than_a_proof_with_models_that_ship_states(models, drawn, task):
     chosen = replace(RefinementSettings(), certify_gap_pct=5.0)
-    cost = cases(models, TASKS)["8 free"][task].objective(models, chosen)
+    cost = drawn["8 free"][task].objective(models, chosen)
     solver, proof = searched_and_proven(cost, chosen, chosen.certify_checks)
     rng = np.random.default_rng(task)
     near = solver.best + 0.02 * cost.ranges.width * rng.standard_normal((2000, cost.ranges.count))

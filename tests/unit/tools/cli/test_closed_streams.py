@@ -57,7 +57,7 @@ def test_a_command_that_only_prints_fails_where_standard_output_is_closed(argume
 
 
 def test_a_picture_that_a_command_draws_besides_needs_no_standard_output(tmp_path):
-    run, picture = RUN.replace("approach", "waypoints"), tmp_path / "why.png"
+    run, picture = RUN.replace("approach", "approach-dribble"), tmp_path / "why.png"
     command = ["sh", "-c", 'exec "$0" -P -m tailor.tools.main why "$1" -o "$2" >&-', sys.executable, run, str(picture)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, f"{picture}\n")
