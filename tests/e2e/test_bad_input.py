@@ -119,10 +119,10 @@ def test_a_demonstration_of_an_unknown_scenario_removes_no_recording(tmp_path):
     assert recording.read_bytes() == b"precious"
 
 
-def test_a_folder_is_no_output(tmp_path):
+def test_a_folder_is_no_output(tmp_path, capsys):
     folder = tmp_path / "p.png"
     folder.mkdir()
-    assert refused("picture", "a.mcap", "-o", folder).endswith("p.png: is a folder, expected a file")
+    assert refused_here(capsys, "picture", "a.mcap", "-o", folder).endswith("p.png: is a folder, expected a file")
 
 
 @pytest.mark.parametrize("command", [("up", "soccer", "--once"), ("bus",)])
@@ -133,10 +133,10 @@ def test_a_bus_for_other_machines_without_keys_is_refused_before_anything_starts
 
 
 @pytest.mark.promise("P39")
-def test_unknown_key_in_a_deployment_file(tmp_path):
+def test_unknown_key_in_a_deployment_file(tmp_path, capsys):
     file = tmp_path / "d.toml"
     file.write_text("[executive]\nsed = 1\n[bus]\nendpoint = 5\n")
-    line = refused("up", "soccer", "--config", file)
+    line = refused_here(capsys, "up", "soccer", "--config", file)
     assert "unknown key 'executive.sed'" in line
     assert "'bus.endpoint' is 5" in line
 
@@ -145,16 +145,17 @@ def test_unknown_key_in_a_deployment_file(tmp_path):
 def test_planner_of_a_deployment_file_is_checked_before_anything_starts(tmp_path, capsys):
     file = tmp_path / "d.toml"
     file.write_text('[planner]\ncommand = "no-such-vhpop"\nlimit_s = 2\n')
-    assert "there is no program 'no-such-vhpop'" in refused("up", "soccer", "--config", file)
+    assert "there is no program 'no-such-vhpop'" in refused_here(capsys, "up", "soccer", "--config", file)
     file.write_text('[planner]\ncommand = "true"\nlimit_s = 0\n')
     assert "planner.limit_s is 0, expected seconds above 0" in refused_here(capsys, "up", "soccer", "--config", file)
 
 
-def test_port_in_use():
+def test_port_in_use(capsys):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
-        assert "the port is in use" in refused("up", "soccer", "--connect", f"tcp/127.0.0.1:{taken.getsockname()[1]}")
+        endpoint = f"tcp/127.0.0.1:{taken.getsockname()[1]}"
+        assert "the port is in use" in refused_here(capsys, "up", "soccer", "--connect", endpoint)
 
 
 def test_a_recording_that_exists_is_refused_before_anything_starts(tmp_path, capsys):
@@ -174,9 +175,9 @@ def zoo(tmp_path):
     return shutil.copytree(ZOO, tmp_path / "zoo")
 
 
-def test_missing_model_file(zoo):
+def test_missing_model_file(zoo, capsys):
     (zoo / "agilo/goToPose/duration.onnx").unlink()
-    assert "goToPose/duration" in refused("up", "soccer", "--zoo", zoo)
+    assert "goToPose/duration" in refused_here(capsys, "up", "soccer", "--zoo", zoo)
 
 
 def test_model_that_was_never_made(zoo, capsys):
