@@ -39,12 +39,15 @@ class Stretch:
       width: Set-point of the gripper, m; None: the task drives no gripper.
       rest_s: Minimum duration of a rest.
       failed: What is wrong at the end of the stretch, from the belief; "": nothing.
+      goes_on: Whether the arm, at the end, moves on to the target of now before the next stretch, from the belief, the
+        arguments and the angles that it has moved to.
     """
 
     target: Target | None
     width: float | None = None
     rest_s: float = 0.0
     failed: Callable[[Any], str] = lambda belief: ""
+    goes_on: Callable[[Any, Array, Joints], bool] = lambda belief, arguments, reached: False
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,8 @@ class ArmTask:
         failure = progress.failure or stretch.failed(belief)
         if last or (failure and not self.homing):
             return Control(progress, command, "failed" if failure else "done", failure)
-        number = len(self.stretches) - 1 if failure else progress.number + 1
+        again = progress.goal is not None and stretch.goes_on(belief, arguments, progress.goal)
+        number = len(self.stretches) - 1 if failure else progress.number + (not again)
         return Control(self._entered(number, now_ns, belief, arguments, failure) or progress, command)
 
     def _entered(self, number: int, now_ns: int, belief: ArmBelief, arguments: Array, failure: str) -> Progress | None:

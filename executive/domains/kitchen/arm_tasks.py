@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 from tailor.executive.actions.arm_task import ArmTask, Stretch
+from tailor.executive.actions.chain import HandPose
 from tailor.executive.actions.cubic import Joints
 from tailor.executive.actions.reach import Reach
 from tailor.executive.domains.kitchen import objects, robot
@@ -19,9 +20,11 @@ from tailor.schemas.kitchen.kinematics import GRIPPER_MAX_M, JOINT_MAX_RADPS
 X, Y, PHI, SPOT_X, SPOT_Y, ASIDE, OUT, HANDLE = range(8)
 BACK_M = (0.12, 0.08, 0.04, 0.0)  # behind the cup where the hand comes down, as far as the arm folds
 OVER_M = 0.07  # above the cup's grasp height
+CLEAR_M = OVER_M - 0.03  # a hand that is lower pushes cups aside on its way
 LIFTED_M = 0.10
 CLOSED_S, OPENED_S = 0.9, 0.7  # until the gripper has closed on a cup, or opened
 SAME_CUP_M = 0.12  # a cup so near the spot is the one to grip
+OFF_M, BESIDE_RAD = 0.045, 0.04  # a hand that comes down from farther beside its place, or aside of it, pushes the cup
 SHUT, WIDE = 0.0, GRIPPER_MAX_M
 
 ACCELERATION_RADPS2 = 1.1  # of a stretch from rest to rest, over all joints
@@ -73,6 +76,27 @@ def _cup_at(belief: KitchenBelief, x: float, y: float) -> tuple[float, float] | 
     return near[1:] if near[0] < SAME_CUP_M else None
 
 
+OVER_CUP = Hand(OVER_M, BACK_M, live=True)
+
+
+def _above(belief: KitchenBelief, arguments: Array) -> Joints | None:
+    """Over the cup; first straight up from where the hand is low, as after a grip at which the cup was moved away."""
+    over, now = OVER_CUP(belief, arguments), robot.ARM.forward(belief.angles)
+    (x, y, z), clear = now.place, robot.GRASP_M + CLEAR_M
+    if over is None or z > clear:
+        return over
+    return robot.ARM.solve(HandPose((x, y, robot.GRASP_M + OVER_M), now.turn), belief.angles) or over
+
+
+def _is_elsewhere(belief: KitchenBelief, arguments: Array, reached: Joints) -> bool:
+    """Whether the hand is not over the cup: it has come up beside it, or the cup was moved meanwhile."""
+    over = OVER_CUP(belief, arguments)
+    if over is None:
+        return False
+    off_m = math.dist(robot.ARM.forward(over).place, robot.ARM.forward(reached).place)
+    return off_m > OFF_M or abs(over[0] - reached[0]) > BESIDE_RAD
+
+
 def _home(belief: KitchenBelief, arguments: Array) -> Joints:
     return robot.HOME
 
@@ -99,7 +123,7 @@ FOLD = ArmTask(REACH, (Stretch(_home),), JOINT_MAX_RADPS)
 GRIP = ArmTask(
     REACH,
     (
-        Stretch(Hand(OVER_M, BACK_M, live=True), WIDE),
+        Stretch(_above, WIDE, goes_on=_is_elsewhere),
         Stretch(Hand(0.0, live=True), WIDE),
         Stretch(None, SHUT, CLOSED_S, _missed),
         Stretch(Hand(LIFTED_M), SHUT),

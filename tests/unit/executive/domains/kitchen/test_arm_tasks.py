@@ -53,6 +53,13 @@ def lowest(beliefs):
     return min(hands, key=lambda place: place[2])
 
 
+def farthest_aside_when_low(beliefs, *wanted_y):
+    """How far a hand that would push cups has been beside both places at which it may be low, m."""
+    hands = [robot.ARM.forward(belief.angles).place for belief in beliefs if not belief.held]
+    low = [y for _, y, z in hands if z < robot.GRASP_M + 0.03]
+    return max(min(abs(y - wanted) for wanted in wanted_y) for y in low)
+
+
 @pytest.mark.parametrize("aside", [-0.3, 0.0, 0.3])
 def test_grip_closes_at_the_cup_and_comes_home(aside):
     beliefs, control = run(GRIP_CUP, believed(), aside=aside)
@@ -65,6 +72,24 @@ def test_grip_follows_a_cup_that_has_moved_a_little():
     beliefs, control = run(GRIP_CUP, believed(), moved=(0.70, 0.16))
     assert control.outcome == "done"
     assert math.dist(lowest(beliefs)[:2], (0.70, 0.16)) < 0.02
+
+
+def test_grip_does_not_push_a_cup_aside_that_was_moved_as_the_hand_was_above_it():
+    beliefs, control = run(GRIP_CUP, believed(), moved=(0.72, 0.20))
+    assert control.outcome == "done"
+    x, y, _ = lowest(beliefs)
+    assert math.dist((x, y), (0.72, 0.20)) < 0.02
+    assert farthest_aside_when_low(beliefs, y) < 0.03
+
+
+def test_grip_comes_up_before_it_goes_to_a_cup_that_was_moved_from_between_its_fingers():
+    low = Hand(0.0)(believed(), arguments(GRIP_CUP))
+    away = (0.72, -0.10)
+    begun = replace(believed(angles=low), things=(replace(CUP, x=away[0], y=away[1]),))
+    beliefs, control = run(GRIP_CUP, begun, spot=away, moved=away)
+    assert control.outcome == "done"
+    assert math.dist(lowest(beliefs[20:])[:2], away) < 0.02
+    assert farthest_aside_when_low(beliefs, SPOT[1], away[1]) < 0.03
 
 
 def test_a_missed_cup_fails_with_the_arm_at_home():
