@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from tailor.runtime.bus.opening import open_local_router
 from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
+from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.session import Session
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.runtime.descriptors import require_descriptors
@@ -21,6 +22,7 @@ from tailor.tools.keys.registry import ROUTER, registered_roles
 
 BY_CERTIFICATES = ("tls/", "quic/")  # protocols that need keys
 HOST_DESCRIPTORS, DESCRIPTORS_EACH = 23, 2  # measured: of the router and of starting a process; of each that runs
+MAX_PORTS = 1000  # that are tried for one which names no bus
 GATEWAY_SILENCE_NS = 5_000_000_000  # of its main loop; floods keep only zenoh's threads busy
 
 
@@ -87,10 +89,23 @@ def _endpoints(settings: BusSettings) -> list[str]:
 
 
 def free_endpoint() -> str:
-    """Unused loopback endpoint, for a system that must not meet another one."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    """Unused loopback endpoint, for a system that must not meet another one.
+
+    A secured bus without an open port has a folder alone, and one that was killed leaves it: neither name is free.
+
+    Raises:
+      UsageError: None of many ports is free.
+    """
+    for _ in range(MAX_PORTS):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+        if not run_folder(endpoint).path.exists():
+            return endpoint
+    folder = run_folder(endpoint).path.parent
+    raise UsageError(
+        f"{folder}: has a bus for each of {MAX_PORTS} free ports, expected few; remove those that were killed"
+    )
 
 
 def private_bus() -> BusSettings:

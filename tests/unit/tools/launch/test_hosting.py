@@ -1,7 +1,10 @@
 """Who may use a bus that is hosted: secured unless another choice is named, and an open one is reported."""
 
+from itertools import repeat
+
 import pytest
 
+from tailor.runtime.bus.rights.run_folder import VARIABLE, run_folder
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.launch import hosting
@@ -98,3 +101,38 @@ def test_keys_without_an_endpoint_for_other_machines_are_refused(opened, capsys)
     assert main(["bus", "--connect", free_endpoint(), "--keys", "robots"]) == 2
     assert "--keys robots: expected with --secure" in capsys.readouterr().err
     assert opened == []
+
+
+class Probe:
+    """A socket to which the system gives the next of some ports."""
+
+    def __init__(self, ports):
+        self.ports = ports
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def bind(self, address):
+        self.address = (address[0], next(self.ports))
+
+    def getsockname(self):
+        return self.address
+
+
+def test_a_name_with_the_folder_of_another_bus_is_not_free(monkeypatch, tmp_path):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    run_folder("tcp/127.0.0.1:40001").path.mkdir()
+    ports = iter((40001, 40002))
+    monkeypatch.setattr(hosting.socket, "socket", lambda: Probe(ports))
+    assert free_endpoint() == "tcp/127.0.0.1:40002"
+
+
+def test_where_every_name_is_taken_the_folder_is_told(monkeypatch, tmp_path):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    run_folder("tcp/127.0.0.1:40001").path.mkdir()
+    monkeypatch.setattr(hosting.socket, "socket", lambda: Probe(repeat(40001)))
+    with pytest.raises(UsageError, match=f"^{tmp_path}: has a bus for each of 1000 free ports"):
+        free_endpoint()
