@@ -1,13 +1,11 @@
 """A bus on a free loopback port, with child processes that end with the test; and a stand-in robot on it."""
 
-import shutil
 import socket
 import sys
 from contextlib import contextmanager
 from pathlib import Path
 
 from tailor.runtime.bus.opening import open_client, open_local_router, open_router
-from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.processes.child import Child
 from tailor.schemas.errors import UsageError
 from tailor.tools.launch.hosting import free_endpoint
@@ -20,8 +18,6 @@ ROOT = Path(__file__).resolve().parents[2]
 def bus_system():
     """Yields (router session, endpoint, start), where start(module, *arguments) runs one of our modules."""
     endpoint = free_endpoint()
-    # a secured bus that was killed at this port leaves its folder, and replays would take this open one for it
-    shutil.rmtree(run_folder(endpoint).path, ignore_errors=True)
     with open_router(endpoint) as session, started() as start:
         yield session, endpoint, start
 
