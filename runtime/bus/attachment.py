@@ -38,3 +38,9 @@ def unpack(data: bytes | None) -> Origin | Rejected:
     if length != SENDER_BYTES:
         return Rejected("bad attachment")
     return Origin(sequence, source_ns, sender.hex())
+
+
+def sender_in(data: bytes | None) -> str:
+    """Sender in an attachment; empty where it states none."""
+    origin = unpack(data)
+    return "" if isinstance(origin, Rejected) else origin.sender

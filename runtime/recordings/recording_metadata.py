@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from tailor.runtime.bus.attachment import unpack
+from tailor.runtime.bus.attachment import sender_in
 from tailor.runtime.bus.inbox import Raw
+from tailor.runtime.newest import Newest
 from tailor.schemas.codec import decode
-from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import Provenance
 from tailor.schemas.topics import TOPICS
 
@@ -29,7 +29,7 @@ class RecordingMetadata:
         """`version` is that of Tailor; `started_ns` is wall time."""
         recorder = {"version": version, "started_wall_ns": str(started_ns), "clocks": json.dumps(CLOCKS)}
         self.entries: dict[str, Mapping[str, str]] = {"recorder": recorder}
-        self._provenances: dict[str, str] = {}  # newest of each executive, by sender
+        self._provenances: Newest[str, str] = Newest(MAX_EXECUTIVES)  # of each executive, by sender
 
     def put(self, name: str, entries: Mapping[str, str]) -> bool:
         """Set a record; False if it is unchanged."""
@@ -48,10 +48,6 @@ class RecordingMetadata:
         message = decode(Provenance, raw.payload)
         if not isinstance(message, Provenance):
             return False
-        origin = unpack(raw.attachment)
-        sender = "" if isinstance(origin, Rejected) else origin.sender
-        known = self._provenances.pop(sender, None)
-        if known is None and len(self._provenances) == MAX_EXECUTIVES:
-            del self._provenances[next(iter(self._provenances))]  # the one that has been silent longest
-        self._provenances[sender] = message.json
+        sender = sender_in(raw.attachment)
+        known = self._provenances.renew(sender, message.json)
         return message.json != known and self.put("provenance", {"sender": sender, "json": message.json})

@@ -6,9 +6,10 @@ from collections import Counter, deque
 from collections.abc import Mapping
 from pathlib import Path
 
-from tailor.runtime.bus.attachment import Origin, unpack
+from tailor.runtime.bus.attachment import sender_in
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import count_key, memory_of
+from tailor.runtime.newest import Newest
 from tailor.runtime.recordings.mcap.channel_table import MAX_KEYS
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.schemas.codec import decode
@@ -65,7 +66,7 @@ class FailureDetector:
     """Detects failures in messages: an executive that enters FAULT, a driver that stops by itself."""
 
     def __init__(self) -> None:
-        self._modes: dict[tuple[str, str], str] = {}  # by key and sender; that of the one silent longest comes first
+        self._modes: Newest[tuple[str, str], str] = Newest(MAX_KEYS)  # by key and sender
 
     def detect(self, raw: Raw) -> str:
         """Description of a new failure, empty if there is none."""
@@ -78,13 +79,8 @@ class FailureDetector:
     def _changed(self, raw: Raw, state: object, bad: tuple[str, ...]) -> str:
         if not isinstance(state, ExecStatus | DriverState):
             return ""
-        origin = unpack(raw.attachment)
         # Two executives, or drivers of one robot, are in modes of their own: one of them in FAULT is no failure again.
-        of = raw.key, origin.sender if isinstance(origin, Origin) else ""
-        before = self._modes.pop(of, None)
-        if before is None and len(self._modes) == MAX_KEYS:
-            del self._modes[next(iter(self._modes))]
-        self._modes[of] = state.mode
+        before = self._modes.renew((raw.key, sender_in(raw.attachment)), state.mode)
         if before is None or state.mode == before or state.mode not in bad:
             return ""
         cause = reason_text(state.reason, state.detail)

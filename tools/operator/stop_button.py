@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from threading import Lock
 
-from tailor.runtime.bus.attachment import Origin, unpack
+from tailor.runtime.bus.attachment import sender_in
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.runtime.bus.session import Session
 from tailor.schemas.messages import DriverState
@@ -53,8 +53,7 @@ class DriverStates:
 
         now_s, fresh = self._now_s(), dict[tuple[str, str], DriverState]()
         for raw in reversed(self._queue.drain()[-MAX_READ:]):
-            robot, origin = raw.key.rpartition("/")[0], unpack(raw.attachment)
-            driver = robot, origin.sender if isinstance(origin, Origin) else ""
+            driver = raw.key.rpartition("/")[0], sender_in(raw.attachment)
             if driver not in fresh and raw.is_put:
                 state = decode(DriverState, raw.payload)
                 if isinstance(state, DriverState):

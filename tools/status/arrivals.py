@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
+from tailor.runtime.newest import Newest
+
 WINDOW_NS = 5_000_000_000
 KEPT = 512  # arrivals; the fastest topic has 250 in the window
 SENDER_NS = 1_000_000_000  # a sender that is silent for longer no longer counts
@@ -20,16 +22,13 @@ class Arrivals:
     def __init__(self) -> None:
         self.count = 0
         self._times: deque[int] = deque(maxlen=KEPT)
-        self._senders: dict[str, int] = {}
+        self._senders: Newest[str, int] = Newest(MAX_SENDERS)
 
     def add(self, now_ns: int, sender: str) -> None:
         """Record an arrival."""
         self.count += 1
         self._times.append(now_ns)
-        self._senders.pop(sender, None)
-        self._senders[sender] = now_ns
-        if len(self._senders) > MAX_SENDERS:
-            del self._senders[next(iter(self._senders))]  # the one silent for longest
+        self._senders.renew(sender, now_ns)
 
     def age_s(self, now_ns: int) -> float:
         """Seconds since the last arrival; there must have been one."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from tailor.runtime.newest import Newest
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ExecStatus, Provenance, TickReport
 from tailor.schemas.parsed_files import table_of
@@ -37,7 +38,7 @@ class Executives:
 
     def __init__(self) -> None:
         self.restarts = 0
-        self._records: dict[str, _Record] = {}
+        self._records: Newest[str, _Record] = Newest(MAX_EXECUTIVES)
 
     def status(self, sender: str, status: ExecStatus, now_ns: int) -> None:
         """Take a status."""
@@ -71,10 +72,8 @@ class Executives:
         return tuple(_view(sender, record, now_ns) for sender, record in kept)
 
     def _record(self, sender: str) -> _Record:
-        record = self._records.pop(sender, None) or _Record()
-        self._records[sender] = record
-        if len(self._records) > MAX_EXECUTIVES:
-            del self._records[next(iter(self._records))]  # the one silent for longest
+        record = self._records.get(sender) or _Record()
+        self._records.renew(sender, record)
         return record
 
 
