@@ -1,16 +1,21 @@
-"""The running course: how likely it fails among the objects believed now, and what changes it without a new search."""
+"""The running course: whether it still serves, how likely it fails among the objects believed now, and what changes it
+without a new search.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from tailor.executive import planning
 from tailor.executive.core.action_cycle import after_action
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.perception import slow_inputs
-from tailor.executive.core.state import State, Task
+from tailor.executive.core.state import Halt, State, Task
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision
-from tailor.executive.interfaces.values import Belief
+from tailor.executive.interfaces.domain_results import anchored
+from tailor.executive.interfaces.reasons import Cause, Reason
+from tailor.executive.interfaces.values import Belief, Fact
 from tailor.executive.refinement.course_check import risen_failure
 from tailor.executive.refinement.course_shortcut import shortcut
 
@@ -18,6 +23,8 @@ from tailor.executive.refinement.course_shortcut import shortcut
 # 1.3 rad/s². Models know no turning: of 300 training starts, 4 were lost to decisions of turning robots.
 HALT_NS = 800_000_000
 HALT_COST_S = 3.0  # expected price of the failures that a halt must save: it takes half of that, and loses speed
+AT_RISK = Cause(Reason.COURSE_AT_RISK)
+LOST_TICKS = 3  # in a row for which a fact is not observed: a percept that is wrong once is not worth a halt
 
 
 def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
@@ -29,13 +36,52 @@ def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tupl
     return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
 
 
-def halted(context: Context, state: State) -> State:
-    """End an action that objects have made likely to fail, or that is too fast for a new way around them.
+def with_supports_checked(context: Context, state: State) -> tuple[State, Cause | None]:
+    """The state with this tick's check counted, and why the running action is to be given up; None if it is not.
+
+    An action before which a subgoal can be put starts well from anywhere on its way, so it may also end there. Others,
+    such as a grip, end first: half of one is no state to plan from.
+    """
+    task = state.task
+    running = task.running
+    if running is None or not (running.asserted or running.action.subgoal_action):
+        return state, None
+    lost = _lost_support(context, state, running)
+    count = running.unsupported + 1 if lost is not None else 0
+    state = replace(state, task=replace(task, running=replace(running, unsupported=count)))
+    return state, Cause(Reason.SUPPORT_LOST, str(lost)) if count >= LOST_TICKS else None
+
+
+def _lost_support(context: Context, state: State, running: Running) -> planning.Literal | None:
+    """A literal that held when the running action was decided and does not hold now, though a later step needs it.
+
+    Predicates that the running action changes are in flux until it ends.
+    """
+    task = state.task
+    action = task.plan.action_of(running.step) if task.plan is not None else None
+    if task.plan is None or action is None:
+        return None
+    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
+    in_flux = {effect.atom.predicate for effect in context.pddl_domain.bound(action)[0].effects}
+    for link in task.plan.links:
+        literal, ahead = link.literal, link.producer == 0 and link.consumer != running.step
+        if ahead and literal.fact[0] not in in_flux and _holds(literal, task.facts) and not _holds(literal, facts):
+            return literal
+    return None
+
+
+def _holds(literal: planning.Literal, facts: frozenset[Fact]) -> bool:
+    return (literal.fact in facts) is literal.positive
+
+
+def halted(context: Context, state: State, cause: Cause = AT_RISK) -> State:
+    """End an action that objects have made likely to fail, that is too fast for a new way, or that serves no more.
 
     The robot brakes first, and decides at rest.
     """
-    task, until_ns = after_action(state.task), state.now_ns + HALT_NS
-    return replace(state, task=task, deliberation=None, coasted=context.settings.coast_ticks, halted_until_ns=until_ns)
+    halt = Halt(state.now_ns + HALT_NS, cause)
+    task, coasted = after_action(state.task), context.settings.coast_ticks
+    return replace(state, task=task, deliberation=None, coasted=coasted, halt=halt)
 
 
 def shortened(context: Context, state: State) -> State:

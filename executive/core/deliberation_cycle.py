@@ -7,12 +7,12 @@ from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.adoption import adopted
-from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened
+from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened, with_supports_checked
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
 from tailor.executive.deliberation.context import Context
-from tailor.executive.deliberation.deliberation import Deliberation
+from tailor.executive.deliberation.deliberation import Decision, Deliberation
 from tailor.executive.deliberation.plan_reuse import reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
@@ -69,17 +69,13 @@ def _with_deliberation(context: Context, state: State) -> State:
     task, ongoing = state.task, state.deliberation
     if ongoing is not None and ongoing.stage in ("decided", "failed"):
         ongoing = None
-    if state.now_ns < state.halted_until_ns:
+    if state.halting is not None:
         return state
     idle = task.running is None and task.decision is None
     if task.running is not None and task.decision is not None:
-        cost_s, risen = risk_of_course(context, state.belief, task.decision)
-        if risen and cost_s > HALT_COST_S:  # also during a search, which may take a second where CPU time is scarce
-            return halted(context, state)
-        if ongoing is not None and not _is_followed(state, ongoing):
+        state, anew = _on_its_way(context, state, task.decision, ongoing)
+        if not anew:
             return state
-        if not (risen or task.decision.watch.outdated(state.belief, task.decision.choice.values)):
-            return shortened(context, state)
     elif not idle or ongoing is not None:
         return state
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
@@ -88,7 +84,22 @@ def _with_deliberation(context: Context, state: State) -> State:
     known = state.next_choice if idle else None
     start = known.values() if known is not None and known.decision.plan is task.plan else {}
     deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
-    return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
+    return replace(state, deliberation=deliberation, deliberations=number, task=replace(state.task, facts=facts))
+
+
+def _on_its_way(context: Context, state: State, decision: Decision, ongoing: Deliberation | None) -> tuple[State, bool]:
+    """The state with the running action as the belief of now leaves it, and whether to deliberate anew."""
+    state, lost = with_supports_checked(context, state)
+    if lost is not None:
+        return halted(context, state, lost), False
+    cost_s, risen = risk_of_course(context, state.belief, decision)
+    if risen and cost_s > HALT_COST_S:  # also during a search, which may take a second where CPU time is scarce
+        return halted(context, state), False
+    if ongoing is not None and not _is_followed(state, ongoing):
+        return state, False
+    if risen or decision.watch.outdated(state.belief, decision.choice.values):
+        return state, True
+    return shortened(context, state), False
 
 
 def _is_followed(state: State, deliberation: Deliberation) -> bool:

@@ -80,6 +80,14 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
+class Halt:
+    """An action that was given up: until that time the robot brakes, and nothing is decided."""
+
+    until_ns: int
+    cause: Cause
+
+
+@dataclass(frozen=True, slots=True)
 class State:
     """The executive between two ticks.
 
@@ -107,8 +115,13 @@ class State:
     next_choice: NextChoice | None = None  # of the last decision that took several ticks
     ground: GroundCache = field(default_factory=GroundCache)
     carried: bool = False  # in this tick the belief found that the robot was moved by others
-    halted_until_ns: int = 0  # until then the robot brakes, and nothing is decided
+    halt: Halt | None = None  # the last one
     deliberations: int = 0  # number of started ones; seeds their random generators
+
+    @property
+    def halting(self) -> Halt | None:
+        """The halt in which the robot brakes now; None if it does not."""
+        return self.halt if self.halt is not None and self.now_ns < self.halt.until_ns else None
 
 
 def undecided(state: State) -> State:

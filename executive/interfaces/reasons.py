@@ -32,6 +32,7 @@ class Reason(StrEnum):
     EFFECTS_HOLD = "effects hold"
     SUPERSEDED = "superseded"
     COURSE_AT_RISK = "course at risk"
+    SUPPORT_LOST = "support lost"
     DISARMED = "disarmed"
     NEW_GOAL = "new goal"
     CANCELLED = "cancelled"
@@ -88,6 +89,9 @@ REASONS: dict[Reason, Row] = {
     Reason.SUPERSEDED: Row(ACTION, "aborted: a new decision begins with another action", ""),
     Reason.COURSE_AT_RISK: Row(
         ACTION, "aborted: failure became likely beside objects, or too fast for a new way; decides anew at rest", ""
+    ),
+    Reason.SUPPORT_LOST: Row(
+        ACTION, "aborted: a later step needs what no longer holds; decides anew at rest", "the literal"
     ),
     Reason.DISARMED: Row(ACTION, "aborted: the driver no longer obeys; it decides anew", "cause of mode DISARMED"),
     Reason.NEW_GOAL: Row(ACTION, "aborted: another goal was set", ""),

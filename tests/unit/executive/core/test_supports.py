@@ -1,0 +1,140 @@
+"""A fact that a later step needs is lost while an action runs: the robot brakes and decides anew, unless the percept
+was wrong, or the action is one that ends first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import pytest
+
+from tailor.executive.core.course import HALT_NS
+from tailor.executive.core.state import Inputs, initial_state
+from tailor.executive.core.step import step
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.reasons import Reason
+from tailor.schemas.messages import ActionFinished, Odometry, VelocityCommand
+from tests.support.toy_domain import SLIDE, LineBelief, LineDomain, driver, line_context, odometry
+
+TICK = 100_000_000
+PLACES = {"home": {"x": 0.0}, "a": {"x": 1.0}, "b": {"x": 2.0}}
+LOST_FROM = 6
+
+
+@dataclass(frozen=True, slots=True)
+class WatchingBelief(LineBelief):
+    lost: bool = False
+
+
+class WatchingLine(LineDomain):
+    """The toy robot, whose drives may end anywhere; it sees whether a fact is lost."""
+
+    actions = {"slide": replace(SLIDE, subgoal_action="slide")}
+    fact = ("place", "b")
+
+    def initial_belief(self):
+        return WatchingBelief()
+
+    def update(self, belief, now_ns, samples, command):
+        lost = belief.lost
+        for sample in samples:
+            if isinstance(sample.message, Odometry):
+                lost = sample.message.phi == 1.0
+        return replace(super().update(belief, now_ns, samples, command), lost=lost, shift=0.0)
+
+    def anchor(self, belief, scenario, remembered):
+        return remembered - {self.fact} if belief.lost else remembered
+
+
+class PatientLine(WatchingLine):
+    """The same robot, whose drives are to end first."""
+
+    actions = {"slide": SLIDE}
+
+
+class ForgetfulLine(WatchingLine):
+    """The same robot; where it has been is what its drives change."""
+
+    fact = ("visited", "a")
+
+
+def run(lost, domain=None, ticks=60):
+    """The states and messages of ticks; `lost` tells at which ticks the fact is not observed."""
+    domain = domain or WatchingLine()
+    context = replace(line_context(places=PLACES), domain=domain)
+    state, x, found = initial_state(context), 0.0, []
+    for tick in range(1, ticks + 1):
+        seen = odometry(tick * TICK, x, tick)
+        seen = replace(seen, message=replace(seen.message, phi=float(lost(tick))))
+        given = Inputs((seen, driver(tick * TICK)), context.problem.goal_text if tick == 1 else "")
+        state, outputs = step(context, state, tick * TICK, given, CheckBudget(2000))
+        found.append((state, [output.message for output in outputs]))
+        x += 0.1 * state.command[0]
+    return found
+
+
+def ends(found):
+    return [
+        (tick, message.outcome, message.reason, message.detail)
+        for tick, (_, messages) in enumerate(found, 1)
+        for message in messages
+        if isinstance(message, ActionFinished)
+    ]
+
+
+def reasons(found):
+    return [reason for _, _, reason, _ in ends(found)]
+
+
+def commands(found):
+    return [message.v for _, messages in found for message in messages if isinstance(message, VelocityCommand)]
+
+
+@pytest.mark.promise("P30")
+def test_an_action_is_given_up_once_a_fact_is_lost_that_a_later_step_needs():
+    found = run(lambda tick: tick >= LOST_FROM)
+    assert ends(found) == [(LOST_FROM + 2, "aborted", Reason.SUPPORT_LOST, "(place b)")]
+    assert commands(found)[LOST_FROM] > 0.4
+    assert not any(commands(found)[LOST_FROM + 2 :])
+    result = found[-1][0].task.result_cause
+    assert result.reason is Reason.UNSOLVABLE
+
+
+def test_it_is_decided_anew_at_rest_from_the_facts_of_then():
+    found = run(lambda tick: LOST_FROM <= tick < LOST_FROM + 5, ticks=100)
+    assert [(outcome, reason) for _, outcome, reason, _ in ends(found)] == [
+        ("aborted", Reason.SUPPORT_LOST),
+        ("done", ""),
+        ("done", ""),
+    ]
+    assert found[-1][0].task.result == "achieved"
+    at_rest = [tick for tick, (state, _) in enumerate(found, 1) if state.halting is not None]
+    assert at_rest == list(range(LOST_FROM + 2, LOST_FROM + 2 + HALT_NS // TICK))
+    assert all(found[tick - 1][0].task.decision is None for tick in at_rest)
+
+
+@pytest.mark.parametrize(
+    "lost",
+    [
+        lambda tick: LOST_FROM <= tick < LOST_FROM + 2,
+        lambda tick: LOST_FROM <= tick < LOST_FROM + 5 and tick != LOST_FROM + 2,
+    ],
+)
+def test_a_percept_that_is_wrong_for_two_ticks_changes_nothing(lost):
+    with_it, without = run(lost), run(lambda tick: False)
+    assert commands(with_it) == commands(without)
+    assert reasons(with_it) == reasons(without) == ["", ""]
+
+
+@pytest.mark.parametrize("domain", [PatientLine(), ForgetfulLine()])
+def test_actions_end_first_that_may_not_be_left_or_that_change_that_predicate(domain):
+    found = run(lambda tick: LOST_FROM <= tick < LOST_FROM + 10 or 25 < tick < 40, domain)
+    assert reasons(found)[0] == ""
+    assert Reason.SUPPORT_LOST not in reasons(found)
+
+
+def test_what_no_later_step_needs_is_not_watched():
+    class Unneeded(WatchingLine):
+        fact = ("place", "a")
+
+    assert Reason.SUPPORT_LOST not in reasons(run(lambda tick: LOST_FROM <= tick < LOST_FROM + 5, Unneeded()))
