@@ -9,6 +9,7 @@ from dataclasses import replace
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import after_action
 from tailor.executive.core.execution import Running, first_action
+from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.state import Halt, State, Task
 from tailor.executive.deliberation.context import Context
@@ -24,7 +25,7 @@ from tailor.executive.refinement.course_shortcut import shortcut
 HALT_NS = 800_000_000
 HALT_COST_S = 3.0  # expected price of the failures that a halt must save: it takes half of that, and loses speed
 AT_RISK = Cause(Reason.COURSE_AT_RISK)
-LOST_TICKS = 3  # in a row for which a fact is not observed: a percept that is wrong once is not worth a halt
+LOST_TICKS = 3  # in a row for which a fact is not observed: a percept that is wrong once changes no plan
 
 
 def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
@@ -36,20 +37,19 @@ def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tupl
     return risen_failure(decision.sequence, choice.values, choice.failure, now, models, settings)
 
 
-def with_supports_checked(context: Context, state: State) -> tuple[State, Cause | None]:
-    """The state with this tick's check counted, and why the running action is to be given up; None if it is not.
+def with_supports_checked(context: Context, state: State) -> State:
+    """The state with this tick's check of the facts that later steps need noted with the running action.
 
     An action before which a subgoal can be put starts well from anywhere on its way, so it may also end there. Others,
     such as a grip, end first: half of one is no state to plan from.
     """
-    task = state.task
-    running = task.running
-    if running is None or not (running.asserted or running.action.subgoal_action):
-        return state, None
-    lost = _lost_support(context, state, running)
-    count = running.unsupported + 1 if lost is not None else 0
-    state = replace(state, task=replace(task, running=replace(running, unsupported=count)))
-    return state, Cause(Reason.SUPPORT_LOST, str(lost)) if count >= LOST_TICKS else None
+    running = state.task.running
+    if running is None or state.mode is not Mode.EXECUTING or not (running.asserted or running.action.subgoal_action):
+        return state
+    missing = _lost_support(context, state, running)
+    count = running.unsupported + 1 if missing is not None else 0
+    lost = Cause(Reason.SUPPORT_LOST, str(missing)) if count >= LOST_TICKS else running.lost
+    return replace(state, task=replace(state.task, running=replace(running, unsupported=count, lost=lost)))
 
 
 def _lost_support(context: Context, state: State, running: Running) -> planning.Literal | None:
@@ -75,7 +75,7 @@ def _holds(literal: planning.Literal, facts: frozenset[Fact]) -> bool:
 
 
 def halted(context: Context, state: State, cause: Cause = AT_RISK) -> State:
-    """End an action that objects have made likely to fail, that is too fast for a new way, or that serves no more.
+    """End an action that objects have made likely to fail, that is too fast for a new way, or that serves no plan.
 
     The robot brakes first, and decides at rest.
     """

@@ -7,7 +7,7 @@ from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.adoption import adopted
-from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened, with_supports_checked
+from tailor.executive.core.course import HALT_COST_S, LOST_TICKS, halted, risk_of_course, shortened
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
@@ -50,7 +50,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
-        return _with_failure(state, deliberation.failure)
+        return _with_failure(context, state, deliberation.failure)
     if deliberation.nothing_to_do():
         finished = state.task.finished + (state.task.running is not None)
         task = replace(state.task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
@@ -73,9 +73,10 @@ def _with_deliberation(context: Context, state: State) -> State:
         return state
     idle = task.running is None and task.decision is None
     if task.running is not None and task.decision is not None:
-        state, anew = _on_its_way(context, state, task.decision, ongoing)
-        if not anew:
-            return state
+        if task.running.unsupported < LOST_TICKS:
+            state, anew = _on_its_way(context, state, task.decision, ongoing)
+            if not anew:
+                return state
     elif not idle or ongoing is not None:
         return state
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
@@ -84,14 +85,11 @@ def _with_deliberation(context: Context, state: State) -> State:
     known = state.next_choice if idle else None
     start = known.values() if known is not None and known.decision.plan is task.plan else {}
     deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
-    return replace(state, deliberation=deliberation, deliberations=number, task=replace(state.task, facts=facts))
+    return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
 
 
 def _on_its_way(context: Context, state: State, decision: Decision, ongoing: Deliberation | None) -> tuple[State, bool]:
     """The state with the running action as the belief of now leaves it, and whether to deliberate anew."""
-    state, lost = with_supports_checked(context, state)
-    if lost is not None:
-        return halted(context, state, lost), False
     cost_s, risen = risk_of_course(context, state.belief, decision)
     if risen and cost_s > HALT_COST_S:  # also during a search, which may take a second where CPU time is scarce
         return halted(context, state), False
@@ -133,9 +131,10 @@ def _with_planner_failure(state: State, deliberation: Deliberation) -> State:
     return replace(state, task=replace(state.task, external_failed=True))
 
 
-def _with_failure(state: State, cause: Cause | None) -> State:
-    """Without a decision a running action continues; otherwise the task has failed."""
-    if state.task.running is not None:
-        return state
+def _with_failure(context: Context, state: State, cause: Cause | None) -> State:
+    """Without a decision a running action continues while its plan holds; without an action the task has failed."""
+    running = state.task.running
+    if running is not None:
+        return halted(context, state, running.lost) if running.lost is not None else state
     task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
     return replace(state, task=task)

@@ -80,7 +80,7 @@ def _overtaken(context: Context, state: State, plan: planning.Plan | None, runni
     action = planned_action(plan, running)
     if action is not None and not missing_effects(context, state.task.facts, action):
         return "done", Cause(Reason.EFFECTS_HOLD)
-    return "aborted", state.halting.cause if state.halting is not None else Cause(Reason.SUPERSEDED)
+    return "aborted", state.halting.cause if state.halting is not None else running.lost or Cause(Reason.SUPERSEDED)
 
 
 def _searched(deliberation: Deliberation | None) -> tuple[int, float]:

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from tailor.executive.core import reporting
 from tailor.executive.core.action_cycle import act, interrupted
+from tailor.executive.core.course import with_supports_checked
 from tailor.executive.core.deliberation_cycle import advance_deliberation, receive_answers
 from tailor.executive.core.perception import disarmed, perceive
 from tailor.executive.core.state import Inputs, Output, State
@@ -40,6 +41,7 @@ def control(context: Context, state: State, now_ns: int, inputs: Inputs) -> tupl
 
 def deliberate(context: Context, state: State, budget: Budget) -> tuple[State, tuple[Output, ...]]:
     """Second half of a tick: planning to refinement within the budget, then reports. Consumes `state`."""
+    state = with_supports_checked(context, state)
     before = reporting.snapshot(state)
     state = advance_deliberation(context, state, budget)
     return state, reporting.reports(context, state, before)

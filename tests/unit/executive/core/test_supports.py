@@ -1,5 +1,5 @@
-"""A fact that a later step needs is lost while an action runs: the robot brakes and decides anew, unless the percept
-was wrong, or the action is one that ends first.
+"""A fact that a later step needs is lost while an action runs: the robot plans anew on its way, and brakes where there
+is no other plan, unless the percept was wrong, or the action is one that ends first.
 """
 
 from __future__ import annotations
@@ -11,13 +11,16 @@ import pytest
 from tailor.executive.core.course import HALT_NS
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
+from tailor.executive.deliberation.context import Settings, make_context
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.domain import Scenario
+from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Reason
 from tailor.schemas.messages import ActionFinished, Odometry, VelocityCommand
-from tests.support.toy_domain import SLIDE, LineBelief, LineDomain, driver, line_context, odometry
+from tests.support.toy_domain import PROBLEM, SENDER, SLIDE, LineBelief, LineDomain, LineModel, driver, odometry
 
 TICK = 100_000_000
-PLACES = {"home": {"x": 0.0}, "a": {"x": 1.0}, "b": {"x": 2.0}}
+PLACES = {"home": {"x": 0.0}, "a": {"x": 1.0}, "b": {"x": 2.0}, "c": {"x": -0.4}, "d": {"x": 0.5}}
 LOST_FROM = 6
 
 
@@ -43,7 +46,8 @@ class WatchingLine(LineDomain):
         return replace(super().update(belief, now_ns, samples, command), lost=lost, shift=0.0)
 
     def anchor(self, belief, scenario, remembered):
-        return remembered - {self.fact} if belief.lost else remembered
+        seen = {self.fact} if self.fact[0] == "place" else set()
+        return remembered - {self.fact} if belief.lost else remembered | seen
 
 
 class PatientLine(WatchingLine):
@@ -58,10 +62,33 @@ class ForgetfulLine(WatchingLine):
     fact = ("visited", "a")
 
 
+class RoadLine(WatchingLine):
+    """The same robot, which needs roads; the shortest way leads over a, another one over c and d."""
+
+    pddl = """
+    (define (domain roads) (:requirements :strips)
+      (:predicates (at ?p) (visited ?p) (road ?from ?to))
+      (:action slide :parameters (?from ?to)
+        :precondition (and (at ?from) (road ?from ?to))
+        :effect (and (not (at ?from)) (at ?to) (visited ?to))))
+    """
+    problem = """
+    (define (problem two-ways) (:domain roads) (:objects home a b c d)
+      (:init (at home) (road home a) (road a b) (road home c) (road c d) (road d b)) (:goal (visited b)))
+    """
+    fact = ("road", "a", "b")
+
+
 def run(lost, domain=None, ticks=60):
     """The states and messages of ticks; `lost` tells at which ticks the fact is not observed."""
     domain = domain or WatchingLine()
-    context = replace(line_context(places=PLACES), domain=domain)
+    context = make_context(
+        domain,
+        Scenario("places", getattr(domain, "problem", PROBLEM), PLACES),
+        Models({"slide/duration": LineModel()}, {}),
+        Settings(),
+        SENDER,
+    )
     state, x, found = initial_state(context), 0.0, []
     for tick in range(1, ticks + 1):
         seen = odometry(tick * TICK, x, tick)
@@ -91,13 +118,23 @@ def commands(found):
 
 
 @pytest.mark.promise("P30")
-def test_an_action_is_given_up_once_a_fact_is_lost_that_a_later_step_needs():
+def test_an_action_is_given_up_at_rest_if_no_plan_does_without_the_fact_that_is_lost():
     found = run(lambda tick: tick >= LOST_FROM)
     assert ends(found) == [(LOST_FROM + 2, "aborted", Reason.SUPPORT_LOST, "(place b)")]
     assert commands(found)[LOST_FROM] > 0.4
     assert not any(commands(found)[LOST_FROM + 2 :])
     result = found[-1][0].task.result_cause
     assert result.reason is Reason.UNSOLVABLE
+
+
+@pytest.mark.promise("P30")
+def test_another_plan_is_taken_up_on_the_way_once_a_fact_is_lost_that_a_later_step_needs():
+    found = run(lambda tick: tick >= LOST_FROM, RoadLine(), ticks=150)
+    assert ends(found)[0] == (LOST_FROM + 2, "aborted", Reason.SUPPORT_LOST, "(road a b)")
+    assert reasons(found)[1:] == ["", "", ""]
+    assert commands(found)[LOST_FROM] > 0.4
+    assert commands(found)[LOST_FROM + 2] < -0.4
+    assert found[-1][0].task.result == "achieved"
 
 
 def test_it_is_decided_anew_at_rest_from_the_facts_of_then():
