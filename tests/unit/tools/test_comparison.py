@@ -109,12 +109,24 @@ def test_info_summarises_a_recording(tmp_path, capsys):
         "rejected": {},
     }
     assert info["episodes"] == [{"goal": "(g)", "result": "achieved"}]
-    done = {"action": "goToPose", "outcome": "done", "predicted_s": 4.0, "actual_s": 5.0, "detail": ""}
+    done = {"action": "goToPose", "outcome": "done", "predicted_s": 4.0, "actual_s": 5.0, "reason": "", "detail": ""}
     assert info["actions"] == [done]
     assert info["modes"] == {"EXECUTING": 19, "FAULT": 1}
     assert (info["faults"], info["driver_stops"]) == (["no"], ["agilo: r"])
     assert info["ticks"]["late_ms"] == {"p50": 10.5, "p99": 19.81, "max": 20.0}
     assert info["ticks"]["skipped_periods"] == 1
+
+
+def test_info_states_why_an_action_was_given_up_and_no_error_of_its_model(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
+    script = Script(tmp_path / "a.mcap")
+    ended = replace(example(ActionFinished), action="goToPose", predicted_s=4.0, actual_s=3.0)
+    script.say(100, "exec/finished", replace(ended, outcome="aborted", reason="support lost", detail="(holding cup1)"))
+    script.say(200, "exec/finished", replace(ended, outcome="done", reason="", detail="early", actual_s=3.99))
+    assert main(["info", str(script.close())]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines() if "aborted" in line or "done" in line]
+    assert rows[0][1:] == ["aborted", "4.00", "3.00", "support", "lost:", "(holding", "cup1)"]
+    assert rows[1][1:] == ["done", "4.00", "3.99", "+0%", "early"]
 
 
 def test_commands_of_other_axes_are_not_equal(tmp_path, capsys):

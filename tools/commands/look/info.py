@@ -12,6 +12,7 @@ from rich.table import Table
 from tailor.runtime.recordings.recording import Recording, open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.parsed_files import table_of
+from tailor.schemas.reason_text import reason_text
 from tailor.tools.cli.plain_text import plain
 from tailor.tools.cli.terminal import table_console
 from tailor.tools.recordings.survey import Stream, Survey, percentiles, survey
@@ -57,6 +58,7 @@ def _summary(recording: Recording, counted: Survey) -> dict[str, Any]:
                 "outcome": a.outcome,
                 "predicted_s": a.predicted_s,
                 "actual_s": a.actual_s,
+                "reason": a.reason,
                 "detail": a.detail,
             }
             for a in counted.actions
@@ -151,11 +153,13 @@ def _topics(rows: list[dict[str, Any]]) -> Table:
 
 def _actions(rows: list[dict[str, Any]]) -> Table:
     table = _table(("action", "outcome"), ("predicted s", "actual s", "error"))
+    table.add_column("why")
     for row in rows:
         predicted, actual = row["predicted_s"], row["actual_s"]
-        error = f"{(actual / predicted - 1):+.0%}" if predicted > 0 else ""
-        error += f" {row['detail']}" if row["outcome"] == "done" else ""
-        table.add_row(plain(row["action"]), plain(row["outcome"]), f"{predicted:.2f}", f"{actual:.2f}", plain(error))
+        known = row["outcome"] == "done" and predicted > 0  # that another one took less time is no error of its model
+        error = f"{round(100 * (actual / predicted - 1)):+d}%" if known else ""
+        why = reason_text(row["reason"], row["detail"])
+        table.add_row(*map(plain, (row["action"], row["outcome"], f"{predicted:.2f}", f"{actual:.2f}", error, why)))
     return table
 
 
