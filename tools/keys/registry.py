@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import ipaddress
 import json
+import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import cast
 
@@ -69,6 +73,23 @@ def check_unused(keys: str, name: str) -> None:
         raise UsageError(f"name {name!r}: a key of it was made before, expected a new name")
 
 
+@contextmanager
+def only_writer(keys: str) -> Iterator[None]:
+    """Hold a folder of keys, made if there is none: another command that changes it waits. A kill releases it.
+
+    Raises:
+      OSError: It cannot be made.
+    """
+    Path(keys).mkdir(mode=0o700, parents=True, exist_ok=True)
+    opened = os.open(keys, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # some network file systems lock no folders: they go without
+            fcntl.flock(opened, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(opened)
+
+
 def _table(keys: str) -> dict[str, str]:
     """All names ever registered, with their roles or REVOKED."""
     path = Path(keys) / FILE
@@ -83,7 +104,7 @@ def _table(keys: str) -> dict[str, str]:
 
 
 def write_role(keys: str, name: str, role: str) -> None:
-    """Register a role, or REVOKED, for a name."""
+    """Register a role, or REVOKED, for a name; the caller is the only writer."""
     path = Path(keys) / FILE
     fresh = path.with_name(FRESH)
     fresh.write_text(json.dumps({**_table(keys), name: role}, indent=2, sort_keys=True) + "\n")

@@ -22,6 +22,7 @@ from tailor.tools.keys.registry import (
     check_host,
     check_name,
     check_unused,
+    only_writer,
     registered_roles,
     write_role,
 )
@@ -75,12 +76,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """0 if done."""
     _check_flags(arguments)
-    roles = registered_roles(arguments.keys)
     if arguments.action == "list":
+        roles = registered_roles(arguments.keys)
         lines = "\n".join(f"{name}: {role}" for name, role in sorted(roles.items()))
         _report(arguments, lines or f"{arguments.keys}: no keys", roles)
     elif arguments.action == "revoke":
-        _revoke(arguments, roles)
+        _revoke(arguments)
     else:
         _new(arguments)
     return 0
@@ -101,9 +102,7 @@ def _check_flags(arguments: argparse.Namespace) -> None:
 
 
 def _new(arguments: argparse.Namespace) -> None:
-    from tailor.tools.keys.authority import Authority, utc_now
-
-    name, keys = check_name(arguments.name), Path(arguments.keys)
+    name = check_name(arguments.name)
     if (name == ROUTER) == bool(arguments.role):
         raise UsageError(f"--role: expected one for every name, but none for '{ROUTER}'")
     if name == ROUTER and not arguments.host:
@@ -114,28 +113,41 @@ def _new(arguments: argparse.Namespace) -> None:
         check_host(host)
     if not 0 < arguments.days <= MAX_DAYS:
         raise UsageError(f"--days is {arguments.days}, expected 1 to {MAX_DAYS}")
-    check_unused(arguments.keys, name)
-    folder, now = keys / name, utc_now()
-    if folder.exists():
-        other = "a new name" if name != ROUTER else "one folder for it: remove that to make it anew, for more hosts say"
-        raise UsageError(f"{folder}: exists already, expected {other}")
+    folder = Path(arguments.keys) / name
     try:
-        authority = Authority.of(keys, now, MAX_DAYS)  # --days is not for it: no key outlasts what signed it
-        authority.issue(folder, name, arguments.host, now, arguments.days)
-        if arguments.role:
-            write_role(arguments.keys, name, arguments.role)
-        if arguments.endpoint:
-            (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder), encoding="utf-8")
-            (folder / SESSION).chmod(0o600)
+        with only_writer(arguments.keys):
+            check_unused(arguments.keys, name)
+            _issue(arguments, folder)
     except OSError as error:
         raise UsageError(f"{error.filename}: {error.strerror}, expected a place for keys") from error
     _report(arguments, str(folder), {"folder": str(folder)})
 
 
-def _revoke(arguments: argparse.Namespace, roles: dict[str, Role]) -> None:
-    if arguments.name not in roles:
-        raise UsageError(f"name {arguments.name!r}: no such key, expected one of: {', '.join(sorted(roles)) or 'none'}")
-    write_role(arguments.keys, arguments.name, REVOKED)
+def _issue(arguments: argparse.Namespace, folder: Path) -> None:
+    from tailor.tools.keys.authority import Authority, utc_now
+
+    name, now = arguments.name, utc_now()
+    if folder.exists():
+        other = "a new name" if name != ROUTER else "one folder for it: remove that to make it anew, for more hosts say"
+        raise UsageError(f"{folder}: exists already, expected {other}")
+    authority = Authority.of(folder.parent, now, MAX_DAYS)  # --days is not for it: no key outlasts what signed it
+    authority.issue(folder, name, arguments.host, now, arguments.days)
+    if arguments.role:
+        write_role(arguments.keys, name, arguments.role)
+    if arguments.endpoint:
+        (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder), encoding="utf-8")
+        (folder / SESSION).chmod(0o600)
+
+
+def _revoke(arguments: argparse.Namespace) -> None:
+    if not Path(arguments.keys).is_dir():
+        raise UsageError(f"{arguments.keys}: no such folder, expected one with keys")
+    with only_writer(arguments.keys):
+        roles = registered_roles(arguments.keys)
+        if arguments.name not in roles:
+            known = ", ".join(sorted(roles)) or "none"
+            raise UsageError(f"name {arguments.name!r}: no such key, expected one of: {known}")
+        write_role(arguments.keys, arguments.name, REVOKED)
     words = f"{arguments.name} may do nothing from the next start of the bus on"
     _report(arguments, words, {"revoked": arguments.name})
 

@@ -3,6 +3,7 @@
 import json
 import stat
 from datetime import UTC, datetime, timedelta
+from threading import Thread
 
 import pytest
 from cryptography import x509
@@ -11,7 +12,7 @@ from cryptography.x509.oid import NameOID
 
 from tailor.schemas.errors import UsageError
 from tailor.tools.keys.authority import AUTHORITY_KEY, Authority
-from tailor.tools.keys.registry import check_name, registered_roles, write_role
+from tailor.tools.keys.registry import check_name, only_writer, registered_roles, write_role
 from tailor.tools.main import main
 
 NOW = datetime(2026, 11, 22, tzinfo=UTC)
@@ -81,6 +82,20 @@ def test_a_revoked_name_has_no_role(tmp_path, capsys):
     write_role(str(tmp_path), "viewing", "observer")
     assert main(["keys", "revoke", "driving", "--keys", str(tmp_path)]) == 0
     assert registered_roles(str(tmp_path)) == {"viewing": "observer"}
+
+
+def test_a_name_is_revoked_while_another_command_makes_a_key(tmp_path):
+    """Each wrote the table that it had read before: rights that were taken were given back."""
+    keys = str(tmp_path)
+    with only_writer(keys):
+        write_role(keys, "driving", "driver")
+        revoking = Thread(target=main, args=(["keys", "revoke", "driving", "--keys", keys],), daemon=True)
+        revoking.start()
+        revoking.join(0.3)
+        assert revoking.is_alive()
+        write_role(keys, "people", "people")
+    revoking.join(10.0)
+    assert registered_roles(keys) == {"people": "people"}
 
 
 @pytest.mark.parametrize("is_revoked", [True, False])
