@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, JointCommand, Message, Sample, VelocityCommand
+from tailor.schemas.reason_text import without_numbers
 from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.command_parts import CommandParts, Part
 from tailor.simnodes.driver_spec import DriverSpec
@@ -99,14 +100,14 @@ class Driver:
         return self.guard.output(now_ns)
 
     def state(self, now_ns: int, stamp_ns: int) -> DriverState | None:
-        """The state if it is due: at 10 Hz, and at once when mode, reason or detail change.
+        """The state if it is due: at 10 Hz, and at once when mode, reason or detail (but a number of a notice) change.
 
         Args:
           now_ns: Monotonic time.
           stamp_ns: Wall time for the message.
         """
-        guard, detail = self.guard, self._detail()
-        current = (guard.mode, guard.reason, detail)
+        guard = self.guard
+        current = (guard.mode, guard.reason, self._detail(without_numbers(self.notice)))  # a voltage changes always
         if current == self._published and now_ns < self._due_ns:
             return None
         self._published = current
@@ -118,7 +119,7 @@ class Driver:
             stamp_ns=stamp_ns,
             mode=guard.mode.value,
             reason=guard.reason.value,
-            detail=detail,
+            detail=self._detail(self.notice),
             epoch=guard.epoch,
             armed_sender=guard.sender,
             accepted=guard.accepted,
@@ -134,9 +135,9 @@ class Driver:
         values, stamp_ns = command_values(message, self._outlets[outlet][1]), getattr(message, "stamp_ns", 0)
         return Part(outlet, sample.sequence, values, stamp_ns)
 
-    def _detail(self) -> str:
+    def _detail(self, notice: str) -> str:
         held = ", ".join(shown(sender) for sender in self.held.senders)
-        parts = self.guard.detail, self._why_unready(), self.notice, f"{HELD_BY}{held}" if held else ""
+        parts = self.guard.detail, self._why_unready(), notice, f"{HELD_BY}{held}" if held else ""
         return "; ".join(text for text in parts if text)
 
     def _why_unready(self) -> str:

@@ -208,6 +208,19 @@ def test_changes_in_quick_succession_do_not_silence_the_state():
     assert published_ms == [*range(0, 210, 10), 300]
 
 
+def test_a_number_of_a_notice_that_always_changes_is_published_with_the_next_state():
+    """A battery's voltage, read a hundred times a second, was published as often."""
+    driver, published = Driver(SPEC, 7), []
+    for period in range(30):
+        now_ns = (1000 + 10 * period) * MS
+        driver.notice = f"battery low: 23.{period:02d} V" if period >= 15 else "battery at 24.0 V"
+        state = driver.state(now_ns, now_ns)
+        if state is not None:
+            published.append((10 * period, state.detail))
+    low = ["battery at 24.0 V"] * 2 + ["battery low: 23.15 V", "battery low: 23.20 V"]
+    assert published == list(zip((0, 100, 150, 200), low, strict=True))
+
+
 @pytest.mark.parametrize(
     ("fault", "unready", "detail"),
     [
