@@ -131,7 +131,7 @@ class Domain(Protocol):
         ...
 
     def anchor(self, belief: Belief, scenario: Scenario, remembered: frozenset[Fact]) -> frozenset[Fact]:
-        """The abstract state of now.
+        """The abstract state of now; also in each tick of an action that may be left on its way, so it is to be fast.
 
         Args:
           belief: The belief of now.
