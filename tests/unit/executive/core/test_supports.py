@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tailor.executive.core.course import HALT_NS
 from tailor.executive.core.state import Inputs, initial_state
@@ -175,3 +177,14 @@ def test_what_no_later_step_needs_is_not_watched():
         fact = ("place", "a")
 
     assert Reason.SUPPORT_LOST not in reasons(run(lambda tick: LOST_FROM <= tick < LOST_FROM + 5, Unneeded()))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(st.booleans(), st.integers(1, 6)), max_size=12), st.sampled_from([WatchingLine, RoadLine]))
+def test_whenever_a_fact_is_missing_the_task_ends_and_no_action_for_less_than_three_ticks(spans, domain):
+    missing = [lost for lost, ticks in spans for _ in range(ticks)]
+    found = run(lambda tick: tick <= len(missing) and missing[tick - 1], domain(), ticks=len(missing) + 160)
+    result = found[-1][0].task
+    assert result.result == "achieved" or result.result_cause.reason is Reason.UNSOLVABLE
+    for tick, outcome, reason, _ in ends(found):
+        assert outcome == "done" or (reason == Reason.SUPPORT_LOST and missing[tick - 3 : tick] == [True] * 3)
