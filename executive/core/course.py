@@ -38,7 +38,7 @@ def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tupl
 
 
 def with_supports_checked(context: Context, state: State) -> State:
-    """The state with this tick's check of the facts that later steps need noted with the running action.
+    """The state with this tick's check of the facts that the plan still needs noted with the running action.
 
     An action before which a subgoal can be put starts well from anywhere on its way, so it may also end there. Others,
     such as a grip, end first: half of one is no state to plan from.
@@ -53,9 +53,10 @@ def with_supports_checked(context: Context, state: State) -> State:
 
 
 def _lost_support(context: Context, state: State, running: Running) -> planning.Literal | None:
-    """A literal that held when the running action was decided and does not hold now, though a later step needs it.
+    """A literal that the plan takes from its start, that held as the running action was decided, and does not hold now.
 
-    Predicates that the running action changes are in flux until it ends.
+    Either a later step needs it, or the running action all along, as it does not change it (a prevail condition of
+    SAS+, Bäckström and Nebel 1995). Predicates that the running action changes are in flux until it ends.
     """
     task = state.task
     action = task.plan.action_of(running.step) if task.plan is not None else None
@@ -64,8 +65,8 @@ def _lost_support(context: Context, state: State, running: Running) -> planning.
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
     in_flux = {effect.atom.predicate for effect in context.pddl_domain.bound(action)[0].effects}
     for link in task.plan.links:
-        literal, ahead = link.literal, link.producer == 0 and link.consumer != running.step
-        if ahead and literal.fact[0] not in in_flux and _holds(literal, task.facts) and not _holds(literal, facts):
+        literal, taken = link.literal, link.producer == 0 and link.literal.fact[0] not in in_flux
+        if taken and _holds(literal, task.facts) and not _holds(literal, facts):
             return literal
     return None
 

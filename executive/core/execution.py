@@ -28,7 +28,7 @@ class Running:
     started_ns: int
     controller_state: Any = None
     interval_s: tuple[float, float] | None = None  # that the duration lies in with 90 %; None: the model has none
-    unsupported: int = 0  # ticks in a row for which a fact has been missing that a later step needs
+    unsupported: int = 0  # ticks in a row for which a fact has been missing that the plan needs
     lost: Cause | None = None  # that fact, once it has been missing for so long that the plan is given up
 
     def elapsed_s(self, now_ns: int) -> float:

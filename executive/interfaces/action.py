@@ -115,7 +115,7 @@ class Action:
       success_model: The same for success; empty: never predicted to fail.
       subgoal_action: Name of the action that is put before this one when it is predicted to fail (Algorithm 3); perhaps
         its own: a copy with a free goal. An action that has one starts well from anywhere on its way, so it may also be
-        left there: it is, once a fact is lost that a later step needs.
+        left there: it is, once a fact is lost that the plan needs.
       subgoal_risk: Risk that the subgoal spoils this action; None: there is no such risk.
       arguments: Maps parameters, shape (n, p), to the arguments of controller and models, shape (n, k). An example: a
         parameter names the ball's place, the argument is the pose behind it.

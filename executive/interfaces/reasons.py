@@ -91,7 +91,7 @@ REASONS: dict[Reason, Row] = {
         ACTION, "aborted: failure became likely beside objects, or too fast for a new way; decides anew at rest", ""
     ),
     Reason.SUPPORT_LOST: Row(
-        ACTION, "aborted: a later step needs what no longer holds; another plan, on the way or at rest", "the literal"
+        ACTION, "aborted: the plan needs what no longer holds; another plan, on the way or at rest", "the literal"
     ),
     Reason.DISARMED: Row(ACTION, "aborted: the driver no longer obeys; it decides anew", "cause of mode DISARMED"),
     Reason.NEW_GOAL: Row(ACTION, "aborted: another goal was set", ""),

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.core.course import HALT_NS
+from tailor.executive.core.course import HALT_NS, with_supports_checked
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import Settings, make_context
@@ -81,16 +81,14 @@ class RoadLine(WatchingLine):
     fact = ("road", "a", "b")
 
 
+def context_of(domain):
+    scenario = Scenario("places", getattr(domain, "problem", PROBLEM), PLACES)
+    return make_context(domain, scenario, Models({"slide/duration": LineModel()}, {}), Settings(), SENDER)
+
+
 def run(lost, domain=None, ticks=60):
     """The states and messages of ticks; `lost` tells at which ticks the fact is not observed."""
-    domain = domain or WatchingLine()
-    context = make_context(
-        domain,
-        Scenario("places", getattr(domain, "problem", PROBLEM), PLACES),
-        Models({"slide/duration": LineModel()}, {}),
-        Settings(),
-        SENDER,
-    )
+    context = context_of(domain or WatchingLine())
     state, x, found = initial_state(context), 0.0, []
     for tick in range(1, ticks + 1):
         seen = odometry(tick * TICK, x, tick)
@@ -172,11 +170,30 @@ def test_actions_end_first_that_may_not_be_left_or_that_change_that_predicate(do
     assert Reason.SUPPORT_LOST not in reasons(found)
 
 
-def test_what_no_later_step_needs_is_not_watched():
-    class Unneeded(WatchingLine):
-        fact = ("place", "a")
+class NearLine(WatchingLine):
+    """The same robot; what is lost is the place to which it drives first."""
 
-    assert Reason.SUPPORT_LOST not in reasons(run(lambda tick: LOST_FROM <= tick < LOST_FROM + 5, Unneeded()))
+    fact = ("place", "a")
+
+
+def test_a_fact_is_watched_that_the_running_action_needs_all_along_and_no_step_any_more_afterwards():
+    assert ends(run(lambda tick: tick >= LOST_FROM, NearLine()))[0][2:] == (Reason.SUPPORT_LOST, "(place a)")
+    found = run(lambda tick: 26 <= tick < 36, NearLine())
+    assert reasons(found) == ["", ""]
+    assert ends(found)[0][0] < 26 < 36 < ends(found)[1][0]
+
+
+def test_what_a_later_step_brings_about_is_not_watched():
+    state = run(lambda tick: False, ticks=LOST_FROM)[-1][0]
+    plan = state.task.plan
+    later = plan.steps[-1].id
+    links = tuple(replace(link, producer=later) for link in plan.links if link.literal.fact == ("place", "b"))
+    state = replace(state, belief=replace(state.belief, lost=True))
+    changed = replace(state, task=replace(state.task, plan=replace(plan, links=links)))
+    counts = [
+        with_supports_checked(context_of(WatchingLine()), each).task.running.unsupported for each in (state, changed)
+    ]
+    assert (len(links), counts) == (1, [1, 0])
 
 
 @settings(max_examples=40, deadline=None)
