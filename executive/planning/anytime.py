@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -10,17 +10,14 @@ from tailor.executive.interfaces.budget import Budget, CheckBudget
 from tailor.executive.planning.best_first import BestFirst
 from tailor.executive.planning.ground.ground_formula import TooMuchToGround
 from tailor.executive.planning.ground.ground_task import GroundTask, make_task
+from tailor.executive.planning.improvement_bound import ImprovementBound
 from tailor.executive.planning.pddl.language import Domain
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.plan_quality import Measure, measure_of, quality
 from tailor.executive.planning.plans.plan import Result
 from tailor.executive.planning.search import GroundCache, Search, plan_space
 from tailor.executive.planning.settings import DEFAULT, DEFAULT_RANKINGS, Settings, rankings_for
-from tailor.executive.planning.structures.orderings import GOAL
 from tailor.executive.planning.structures.random_source import RandomSource
-from tailor.executive.planning.structures.refinable import Refinable
-
-SLACK, RELATIVE_SLACK = 1e-9, 1e-12  # of sums of costs: the lesser of the two; floats have 16 digits
 
 
 class AnytimeSearch:
@@ -28,7 +25,8 @@ class AnytimeSearch:
 
     The first plan is the one that is found most surely (rankings ADDR/ADDR_WORK/BUC/LIFO unless chosen). Then
     partial-order search goes through plan space once more, ranked by the metric: partial plans that already last as
-    long, cost as much or have as many steps as the best plan are dropped.
+    long, cost as much or have as many steps as the best plan are dropped. Of makespans there are two such searches, by
+    turns: the second one ranks by the least makespan that the use of exclusive facts leaves.
     """
 
     def __init__(
@@ -40,7 +38,7 @@ class AnytimeSearch:
         self._cache = ground if ground is not None else GroundCache()
         rankings = settings.rankings or DEFAULT_RANKINGS
         self._first = Search(domain, problem, replace(settings, rankings=rankings), self._cache)
-        self._second: BestFirst[Any] | None = None
+        self._second: list[BestFirst[Any]] = []
         self._work = self._run()
         self.measure: Measure = measure_of(problem)
         self.best: Result | None = None  # the best plan so far, or why there is none
@@ -51,9 +49,8 @@ class AnytimeSearch:
     def counts(self) -> tuple[int, int]:
         """Numbers of plans generated and visited so far."""
         generated, visited = self._first.counts
-        if self._second is not None:
-            generated, visited = generated + self._second.generated, visited + self._second.visited
-        return generated, visited
+        generated += sum(engine.generated for engine in self._second)
+        return generated, visited + sum(engine.visited for engine in self._second)
 
     def advance(self, budget: Budget) -> Result | None:
         """Continues until a better plan is found, the search ends or the budget is spent.
@@ -94,53 +91,55 @@ class AnytimeSearch:
         grounded = self._cache.last
         assert grounded is not None
         task: GroundTask = yield from make_task(self._problem, grounded, settings.action_cost)
-        space = yield from plan_space(task, grounded, settings, RandomSource(settings.seed))
-        engine = BestFirst[Any](space, settings)
-        bound = _Bound(self.measure, task, self.value)
-        engine.goes_on, engine.is_hopeless = True, bound.is_hopeless
-        self._second = engine
-        for result in engine.run():
-            if result is None:
-                yield None
-            elif result.plan is None:
-                self.ended = "proven" if result.status == "unsolvable" else result.reason
-                yield None
-                return
-            elif bound.is_better(value := quality(result.plan, self._problem)):
-                self.value = value
-                bound.lower(value)
-                self.best = replace(result, generated=self.counts[0], visited=self.counts[1])
-                yield self.best
-            else:
-                yield None
+        bound = yield from self._bound(task)
+        spaces = [(yield from plan_space(task, grounded, settings, RandomSource(settings.seed)))]
+        if bound.is_sharp and not self._settings.rankings:
+            spaces.append((yield from plan_space(task, grounded, settings, RandomSource(settings.seed))))
+            spaces[1].rank = bound.ranked_by_makespan(spaces[1].rank)
+            settings = replace(settings, node_limit=settings.node_limit // 2)
+        engines = [BestFirst[Any](space, settings) for space in spaces]
+        for engine in engines:
+            engine.goes_on, engine.is_hopeless = True, bound.is_hopeless
+            engine.max_entries //= len(engines)
+        self._second = engines
+        yield from self._by_turns([engine.run() for engine in engines], bound)
 
+    def _bound(self, task: GroundTask) -> Generator[None, None, ImprovementBound]:
+        """The bound by the first plan; of makespans of ground plans by exclusive facts, too."""
+        assert self.best is not None
+        assert self.best.plan is not None
+        if self.measure != "makespan" or not task.temporal or not self._settings.ground:
+            return ImprovementBound(self.measure, task, self.value)
+        # loaded here: only problems in which actions take time have a use for them
+        from tailor.executive.planning.ground.exclusive_facts import exclusive_facts
+        from tailor.executive.planning.ground_plans.occupation import Occupation
 
-class _Bound:
-    """Recognises partial plans that can only become as good as the best plan, or worse."""
+        occupation = Occupation(task, (yield from exclusive_facts(task)))
+        mean = sum(step.duration for step in self.best.plan.steps) / max(len(self.best.plan.steps), 1)
+        return ImprovementBound(self.measure, task, self.value, occupation, mean)
 
-    def __init__(self, measure: Measure, task: GroundTask, value: float) -> None:
-        self._measure, self._task = measure, task
-        self.lower(value)
+    def _by_turns(self, searches: list[Iterator[Result | None]], bound: ImprovementBound) -> Iterator[Result | None]:
+        """Advances each search by one plan in turn until one has a proof or all have reached a limit."""
+        while searches:
+            for search in searches.copy():
+                result = next(search)
+                if result is None:
+                    yield None
+                elif result.plan is not None:
+                    yield self._better(result, bound)
+                elif result.status == "unsolvable" or len(searches) == 1:
+                    self.ended = "proven" if result.status == "unsolvable" else result.reason
+                    yield None
+                    return
+                else:
+                    searches.remove(search)
 
-    def lower(self, value: float) -> None:
-        """Sets the value of the best plan."""
-        slack = min(SLACK, value * RELATIVE_SLACK) if self._measure == "cost" else 0
-        self._limit = self._exact(value) - slack
-
-    def is_better(self, value: float) -> bool:
-        """Whether a plan of this value is better than the best one."""
-        return self._exact(value) < self._limit
-
-    def is_hopeless(self, plan: Refinable) -> bool:
-        """Whether all plans below are no better; times and costs only grow as steps are added."""
-        match self._measure:
-            case "cost":
-                return plan.cost >= self._limit
-            case "makespan":
-                return plan.orderings.earliest()[GOAL] >= self._limit
-            case _:
-                return len(plan.steps) >= self._limit
-
-    def _exact(self, value: float) -> float:
-        """A makespan in whole units of the time grid: durations may differ by a nanosecond."""
-        return self._task.grid.units(value) if self._measure == "makespan" and self._task.temporal else value
+    def _better(self, result: Result, bound: ImprovementBound) -> Result | None:
+        """The result with a better plan, as the best one from now on; None if its plan is no better."""
+        assert result.plan is not None
+        if not bound.is_better(value := quality(result.plan, self._problem)):
+            return None
+        self.value = value
+        bound.lower(value)
+        self.best = replace(result, generated=self.counts[0], visited=self.counts[1])
+        return self.best

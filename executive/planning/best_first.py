@@ -51,6 +51,7 @@ class BestFirst(Generic[P]):
         self.generated = 0
         self.visited = 0
         self.is_hopeless: Callable[[P], bool] | None = None  # of an anytime search: the plan leads to none better
+        self.max_entries = MAX_ENTRIES
         self.goes_on = False  # whether the search continues after a plan
 
     def run(self) -> Iterator[Result | None]:
@@ -87,7 +88,7 @@ class BestFirst(Generic[P]):
                 yield self._limit_reached(f"{self._limit} plans generated")
                 return
             plan: P = heapq.heappop(plans)[-1]
-            if len(plans) * plan.orderings.entries > MAX_ENTRIES:  # the others are about as large
+            if len(plans) * plan.orderings.entries > self.max_entries:  # the others are about as large
                 yield self._limit_reached("the queued plans take too much memory")
                 return
             if len(plan.steps) > self._step_limit:

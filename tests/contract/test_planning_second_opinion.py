@@ -8,7 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tailor.executive import domains
-from tailor.executive.planning import DEFAULT, MATCHING, Settings, format_plan, format_problem, validate
+from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.planning import DEFAULT, MATCHING, AnytimeSearch, Settings, format_plan, format_problem, validate
 from tailor.schemas.installed import domain_names
 from tests.contract.random_temporal import random_task
 from tests.support.planning.planning_problems import DATA, OWN, SHARED, read, solve
@@ -54,6 +55,17 @@ def test_both_refuse_the_same_plans(name):
                 steps = sorted([*plan.steps[:number], moved, *plan.steps[number + 1 :]], key=lambda s: s.start)
                 other = dataclasses.replace(plan, steps=tuple(steps))
                 assert (validate(other, domain, problem) == "") == accepted(TEXTS[name], other), format_plan(other)
+
+
+@pytest.mark.parametrize("name", [name for name in TEXTS if "durative" in name or "satellite" in name])
+def test_every_better_plan_of_an_anytime_search_is_sound_in_anothers_eyes(name):
+    domain, problem = read(*TEXTS[name])
+    search = AnytimeSearch(domain, problem, Settings(engine="pocl", node_limit=1500))
+    while not search.ended:
+        result = search.advance(CheckBudget(1000))
+        if result is not None:
+            assert validate(result.plan, domain, problem) == ""
+            assert accepted(TEXTS[name], result.plan)
 
 
 # --- requests to an external planner ---------------------------------------------------------------

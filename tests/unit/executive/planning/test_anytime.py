@@ -17,6 +17,7 @@ from tailor.executive.planning import (
     quality,
     validate,
 )
+from tailor.executive.planning.settings import DEFAULT_RANKINGS
 from tests.support.planning.planning_problems import own, read, solve
 
 ROADS = """(define (domain roads) (:requirements :strips :action-costs)
@@ -200,3 +201,50 @@ def test_a_condition_with_too_many_instances_ends_the_second_search_at_a_limit()
     assert [step.action for step in search.best.plan.steps] == [("paid",)]
     assert search.ended == "'not q' has more than 2500 instances"
     assert len(results) == 1
+
+
+# --- what exclusive facts leave ------------------------------------------------------------------
+VISITS = """(define (domain visits) (:requirements :durative-actions)
+  (:predicates (at ?r ?x) (seen ?x) (off ?r) (on ?r) (ready ?r))
+  (:durative-action start :parameters (?r) :duration (= ?duration 2) :condition (at start (off ?r))
+    :effect (and (at start (not (off ?r))) (at end (on ?r))))
+  (:durative-action adjust :parameters (?r) :duration (= ?duration 3) :condition (over all (on ?r))
+    :effect (at end (ready ?r)))
+  (:durative-action go :parameters (?r ?x ?y) :duration (= ?duration 5) :condition (at start (at ?r ?x))
+    :effect (and (at start (not (at ?r ?x))) (at end (at ?r ?y))))
+  (:durative-action look :parameters (?r ?x) :duration (= ?duration 7)
+    :condition (and (over all (ready ?r)) (over all (at ?r ?x))) :effect (at end (seen ?x))))"""
+SIX = """(define (problem p) (:domain visits) (:objects a b h p1 p2 p3 p4 p5 p6)
+  (:init (off a) (off b) (at a h) (at b h))
+  (:goal (and (seen p1) (seen p2) (seen p3) (seen p4) (seen p5) (seen p6))))"""
+
+
+def test_work_is_divided_among_robots_although_one_could_do_all_with_fewer_steps():
+    domain, problem = read(VISITS, SIX)
+    search, results = improvements(domain, problem, Settings(engine="pocl", node_limit=6000))
+    assert results[0].plan.makespan > 70
+    assert search.value == pytest.approx(3 * (5 + 7), abs=0.1)
+    assert all(validate(result.plan, domain, problem) == "" for result in results)
+
+
+def test_both_searches_together_keep_to_the_limit_of_generated_plans():
+    domain, problem = read(VISITS, SIX)
+    first = solve(domain, problem, Settings(rankings=DEFAULT_RANKINGS))
+    search, _ = improvements(domain, problem, Settings(engine="pocl", node_limit=2000))
+    most = 100  # children of one plan
+    assert search.ended == "1000 plans generated"
+    assert 2000 <= search.counts[0] - first.generated < 2000 + 2 * most
+
+
+@pytest.mark.parametrize("checks", [1, 7])
+def test_slices_change_nothing_of_searches_by_turns(checks):
+    settings = Settings(engine="pocl", node_limit=3000)
+    whole, sliced = improvements(*read(VISITS, SIX), settings), improvements(*read(VISITS, SIX), settings, checks)
+    assert sliced[1] == whole[1]
+    assert sliced[0].counts == whole[0].counts
+
+
+def test_chosen_rankings_are_kept():
+    domain, problem = read(VISITS, SIX)
+    search, _ = improvements(domain, problem, Settings(rankings=("ADDR", "LIFO"), engine="pocl", node_limit=500))
+    assert search.ended == "500 plans generated"
