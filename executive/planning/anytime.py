@@ -38,7 +38,7 @@ class AnytimeSearch:
         self._cache = ground if ground is not None else GroundCache()
         rankings = settings.rankings or DEFAULT_RANKINGS
         self._first = Search(domain, problem, replace(settings, rankings=rankings), self._cache)
-        self._second: list[BestFirst[Any]] = []
+        self._improving: list[BestFirst[Any]] = []
         self._work = self._run()
         self.measure: Measure = measure_of(problem)
         self.best: Result | None = None  # the best plan so far, or why there is none
@@ -49,8 +49,8 @@ class AnytimeSearch:
     def counts(self) -> tuple[int, int]:
         """Numbers of plans generated and visited so far."""
         generated, visited = self._first.counts
-        generated += sum(engine.generated for engine in self._second)
-        return generated, visited + sum(engine.visited for engine in self._second)
+        generated += sum(engine.generated for engine in self._improving)
+        return generated, visited + sum(engine.visited for engine in self._improving)
 
     def advance(self, budget: Budget) -> Result | None:
         """Continues until a better plan is found, the search ends or the budget is spent.
@@ -101,7 +101,7 @@ class AnytimeSearch:
         for engine in engines:
             engine.goes_on, engine.is_hopeless = True, bound.is_hopeless
             engine.max_entries //= len(engines)
-        self._second = engines
+        self._improving = engines
         yield from self._by_turns([engine.run() for engine in engines], bound)
 
     def _bound(self, task: GroundTask) -> Generator[None, None, ImprovementBound]:

@@ -65,7 +65,7 @@ class ImprovementBound:
 
         def ranked(plan: Any, number: int) -> Rank | None:
             first = rank(plan, number)
-            return first and (first[0] + self._makespan(plan) / self._unit, *first[1:])
+            return None if first is None else (first[0] + self._makespan(plan) / self._unit, *first[1:])
 
         return ranked
 
