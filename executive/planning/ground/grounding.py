@@ -8,7 +8,7 @@ to right.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,7 @@ from tailor.executive.planning.ground.ground_formula import (
     TooMuchToGround,
 )
 from tailor.executive.planning.ground.instances import instance
-from tailor.executive.planning.pddl.language import Action
+from tailor.executive.planning.pddl.language import Action, Domain, Typed
 from tailor.executive.planning.pddl.problem import Problem
 from tailor.executive.planning.structures.random_source import RandomSource
 
@@ -70,13 +70,25 @@ def static_world(problem: Problem) -> StaticWorld:
     domain = problem.domain
     static = frozenset(domain.predicates.keys() - problem.changing)
     ordered = sorted(domain.constants, key=lambda t: t.name) + sorted(problem.objects, key=lambda t: t.name)
-    objects: dict[str, list[str]] = {kind: [] for kind in domain.types}
-    for item in ordered:
-        for kind in frozenset[str]().union(*(domain.ancestors[own] for own in item.types)):
-            objects[kind].append(item.name)
     facts = frozenset(fact for fact in problem.initial if fact[0] in static)
-    by_type = {kind: tuple(names) for kind, names in objects.items()}
-    return StaticWorld(domain, by_type, static, facts, dict(problem.values), domain.durative)
+    return StaticWorld(domain, _by_type(domain, ordered), static, facts, dict(problem.values), domain.durative)
+
+
+def _by_type(domain: Domain, ordered: Sequence[Typed]) -> dict[str, tuple[str, ...]]:
+    """The names of each type's objects, in their order; thousands of objects may be of hundreds of types."""
+    alike: dict[tuple[str, ...], list[int]] = {}  # places of the objects that are declared alike
+    for place, item in enumerate(ordered):
+        alike.setdefault(item.types, []).append(place)
+    declared: dict[str, list[tuple[str, ...]]] = {kind: [] for kind in domain.types}
+    for types in alike:
+        for kind in frozenset[str]().union(*(domain.ancestors[own] for own in types)):
+            declared[kind].append(types)
+    names: dict[tuple[tuple[str, ...], ...], tuple[str, ...]] = {}
+    for own in map(tuple, declared.values()):
+        if own not in names:
+            places = sorted(place for types in own for place in alike[types])
+            names[own] = tuple(ordered[place].name for place in places)
+    return {kind: names[tuple(own)] for kind, own in declared.items()}
 
 
 def ground_actions(

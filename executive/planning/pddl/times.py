@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 
 NS_PER_S = 10**9
 NANOSECOND_S = 1e-9  # times are whole nanoseconds
 
 
+@lru_cache(maxsize=4096)  # a problem has few numbers, which thousands of bindings share
 def exact(value: float) -> Fraction:
     """The decimal number that a float was read from."""
     return Fraction(repr(value))
