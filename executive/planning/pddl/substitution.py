@@ -15,6 +15,8 @@ def substituted(formula: Formula, terms: Mapping[str, str]) -> Formula:
       formula: Its free variables are keys of `terms`, unless these name terms that it does not contain.
       terms: By variable, the term that replaces it.
     """
+    if not terms:  # thousands of uses share one formula
+        return formula
     match formula:
         case Atom(predicate, names):
             return Atom(predicate, tuple(terms.get(name, name) for name in names))
