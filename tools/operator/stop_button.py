@@ -111,6 +111,8 @@ class StopButton:
                         states.poll()
                     if elapsed_s >= HEAR_S and all_stopped(states.newest, expected):
                         break
+                else:
+                    states.poll()  # on a busy machine the first one may take all of the time, to load the codec
                 return states.newest
 
 

@@ -1,10 +1,12 @@
 """What is repeated and what counts as confirmed when people arm or disarm; times in seconds."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 
-from tailor.schemas.messages import ArmRequest, DriverState
+from tailor.schemas.messages import ArmRequest, DriverState, Sample
+from tailor.tools.commands.run import arm
 from tailor.tools.operator.arming_exchange import Exchange, Outcome
 from tests.support.bus_system import ROOT
 
@@ -246,3 +248,23 @@ def test_the_page_of_reasons_lists_every_outcome():
     page = (ROOT / "docs" / "reasons.md").read_text(encoding="utf-8")
     listed = re.findall(r"^\| `Outcome` \| `([^`]+)` \|", page, re.MULTILINE)
     assert listed == [outcome.value for outcome in Outcome]
+
+
+def test_what_has_arrived_counts_although_a_publication_took_all_of_the_time(monkeypatch):
+    """On a busy machine the first one loads the codec for seconds; a driver that had disarmed was said to be silent."""
+    clock = SimpleNamespace(s=0.0)
+    monkeypatch.setattr(arm.time, "monotonic", lambda: clock.s)
+    monkeypatch.setattr(arm.time, "sleep", lambda pause_s: setattr(clock, "s", clock.s + pause_s))
+    arrived = [[], [ARMED, state(reason="disarm request"), state(reason="disarm request")]]
+
+    def drain():
+        found = arrived.pop(0) if arrived else []
+        return [Sample("agilo/driver", each, int(clock.s * 1e9), n, B) for n, each in enumerate(found)]
+
+    def publish(message):
+        clock.s += 10.0
+
+    publisher = SimpleNamespace(publish=publish, matched=lambda: True)
+    session = SimpleNamespace(publisher=lambda *key: publisher, inbox=lambda *key, **more: SimpleNamespace(drain=drain))
+    outcome, _ = arm._exchange(session, "agilo", OFF, SimpleNamespace(requested=False))
+    assert outcome is Outcome.CONFIRMED

@@ -267,3 +267,22 @@ def test_what_people_read_of_a_held_switch_is_no_part_of_the_json(monkeypatch, c
     printed = capsys.readouterr()
     assert json.loads(printed.out) == {"stopped": False, "drivers": {}}
     assert printed.err.endswith("\nagilo is armed: hears this switch\n")
+
+
+def test_what_was_heard_counts_although_the_first_look_took_all_of_the_time(monkeypatch):
+    """On a busy machine the first look loads the codec for seconds; drivers that had stopped were said not to have."""
+    clock = SimpleNamespace(s=0.0)
+    monkeypatch.setattr(stop_button.time, "monotonic", lambda: clock.s)
+    monkeypatch.setattr(stop_button.time, "sleep", lambda pause_s: setattr(clock, "s", clock.s + pause_s))
+    bus, poll = Bus(agilo=confirms(after=9)), stop_button.DriverStates.poll
+
+    def slow(states):
+        heard = poll(states)
+        if clock.s < 1.0:
+            clock.s += 5.0
+            for _ in range(9):  # from the e-stops that were under way
+                bus.publish_encoded(STOP)
+        return heard
+
+    monkeypatch.setattr(stop_button.DriverStates, "poll", slow)
+    assert all_stopped(StopButton(bus).press())

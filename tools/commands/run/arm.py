@@ -16,6 +16,7 @@ import time
 from tailor.runtime.bus.publisher import Publisher
 from tailor.runtime.bus.session import Session
 from tailor.runtime.stopping import Stop, stoppable
+from tailor.schemas.codec import encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import ArmRequest, DriverState, EStop, ExecStatus
 from tailor.schemas.reason_text import reason_text
@@ -118,6 +119,7 @@ def _executive_sender(session: Session) -> str:
 
 def _exchange(session: Session, robot: str, request: ArmRequest, stop: Stop) -> tuple[Outcome | None, Exchange]:
     """Repeat a request until its outcome is known, or a stop is requested; one to arm without any is taken back."""
+    encode(request)  # loads the codec, which takes seconds on a busy machine: no time limit counts them
     publisher, exchange = session.publisher("arm_request", robot), Exchange(request, time.monotonic())
     outcome: Outcome | None = None
     try:
@@ -131,18 +133,21 @@ def _exchange(session: Session, robot: str, request: ArmRequest, stop: Stop) -> 
 
 def _outcome(session: Session, robot: str, publisher: Publisher, exchange: Exchange, stop: Stop) -> Outcome | None:
     inbox = session.inbox(["driver", "estop"], robot, newest_only=False)  # a change in between must be seen
-    while (outcome := exchange.outcome(time.monotonic())) is None and not stop.requested:
+    while not stop.requested:
         for sample in inbox.drain():
             if isinstance(sample.message, DriverState):
                 exchange.hear(sample.message, sample.arrival_ns / 1e9)
             elif isinstance(sample.message, EStop) and sample.message.stop:
                 exchange.halt(time.monotonic())
+        outcome = exchange.outcome(time.monotonic())  # of all that has arrived, however late this process gets the CPU
+        if outcome is not None:
+            return outcome
         due = exchange.due(time.monotonic())
         if due is not None:
             publisher.publish(due)
         exchange.matched = exchange.matched or publisher.matched()
         time.sleep(POLL_S)
-    return outcome
+    return None
 
 
 def _advice(robot: str, refusal: str) -> str:
