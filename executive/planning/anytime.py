@@ -111,8 +111,8 @@ class AnytimeSearch:
         if self.measure != "makespan" or not task.temporal or not self._settings.ground:
             return ImprovementBound(self.measure, task, self.value)
         # loaded here: only problems in which actions take time have a use for them
-        from tailor.executive.planning.ground.exclusive_facts import exclusive_facts
-        from tailor.executive.planning.ground_plans.occupation import Occupation
+        from tailor.executive.planning.bounds.exclusive_facts import exclusive_facts
+        from tailor.executive.planning.bounds.occupation import Occupation
 
         occupation = Occupation(task, (yield from exclusive_facts(task)))
         mean = sum(step.duration for step in self.best.plan.steps) / max(len(self.best.plan.steps), 1)

@@ -12,7 +12,7 @@ from tailor.executive.planning.structures.orderings import GOAL
 from tailor.executive.planning.structures.refinable import Refinable
 
 if TYPE_CHECKING:
-    from tailor.executive.planning.ground_plans.occupation import Occupation
+    from tailor.executive.planning.bounds.occupation import Occupation
 
 SLACK, RELATIVE_SLACK = 1e-9, 1e-12  # of sums of costs: the lesser of the two; floats have 16 digits
 STEPS_OF_MAKESPAN = 3  # a plan whose makespan is longer by a mean step ranks as one with so many more steps

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from tailor.executive.planning.ground.exclusive_facts import ExclusiveFacts, Group
+from tailor.executive.planning.bounds.exclusive_facts import ExclusiveFacts, Group
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import PartialPlan
 from tailor.executive.planning.structures.orderings import GOAL

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tailor.executive.planning.ground.exclusive_facts import exclusive_facts
+from tailor.executive.planning.bounds.exclusive_facts import exclusive_facts
 from tailor.executive.planning.ground.ground_task import make_task
 from tailor.executive.planning.ground.grounding import ground_actions, static_world
 from tailor.executive.planning.plans.portions import completed_work

@@ -2,8 +2,8 @@
 
 import pytest
 
-from tailor.executive.planning.ground.exclusive_facts import exclusive_facts
-from tailor.executive.planning.ground_plans.occupation import Occupation
+from tailor.executive.planning.bounds.exclusive_facts import exclusive_facts
+from tailor.executive.planning.bounds.occupation import Occupation
 from tailor.executive.planning.ground_plans.open_conditions import refine_open
 from tailor.executive.planning.plans.portions import completed_work
 from tests.support.planning.planning_problems import refined

@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.planning import AnytimeSearch, Settings, validate
 from tailor.executive.planning.best_first import BestFirst
-from tailor.executive.planning.ground.exclusive_facts import exclusive_facts
+from tailor.executive.planning.bounds.exclusive_facts import exclusive_facts
+from tailor.executive.planning.bounds.occupation import Occupation
 from tailor.executive.planning.ground.ground_task import make_task
 from tailor.executive.planning.ground.grounding import ground_actions, static_world
-from tailor.executive.planning.ground_plans.occupation import Occupation
 from tailor.executive.planning.ground_space import GroundSpace
 from tailor.executive.planning.plans.portions import completed_work
 from tailor.executive.planning.structures.random_source import RandomSource
