@@ -99,7 +99,7 @@ def _started(context: Context, state: State) -> State:
 def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> planning.Literal | None:
     """A precondition that the plan took from the initial state and that no longer holds."""
     for link in plan.links_to(step):
-        if link.producer == 0 and (link.literal.fact in facts) is not link.literal.positive:
+        if link.producer == 0 and not link.literal.holds_in(facts):
             return link.literal
     return None
 

@@ -16,7 +16,7 @@ from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision
 from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.reasons import Cause, Reason
-from tailor.executive.interfaces.values import Belief, Fact
+from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.course_check import risen_failure
 from tailor.executive.refinement.course_shortcut import shortcut
 
@@ -66,13 +66,9 @@ def _lost_support(context: Context, state: State, running: Running) -> planning.
     in_flux = {effect.atom.predicate for effect in context.pddl_domain.bound(action)[0].effects}
     for link in task.plan.links:
         literal, taken = link.literal, link.producer == 0 and link.literal.fact[0] not in in_flux
-        if taken and _holds(literal, task.facts) and not _holds(literal, facts):
+        if taken and literal.holds_in(task.facts) and not literal.holds_in(facts):
             return literal
     return None
-
-
-def _holds(literal: planning.Literal, facts: frozenset[Fact]) -> bool:
-    return (literal.fact in facts) is literal.positive
 
 
 def halted(context: Context, state: State, cause: Cause = AT_RISK) -> State:

@@ -84,11 +84,14 @@ def _by_type(domain: Domain, ordered: Sequence[Typed]) -> dict[str, tuple[str, .
         for kind in frozenset[str]().union(*(domain.ancestors[own] for own in types)):
             declared[kind].append(types)
     names: dict[tuple[tuple[str, ...], ...], tuple[str, ...]] = {}
-    for own in map(tuple, declared.values()):
-        if own not in names:
+    by_type = {}
+    for kind, own in declared.items():
+        key = tuple(own)
+        if key not in names:
             places = sorted(place for types in own for place in alike[types])
-            names[own] = tuple(ordered[place].name for place in places)
-    return {kind: names[tuple(own)] for kind, own in declared.items()}
+            names[key] = tuple(ordered[place].name for place in places)
+        by_type[kind] = names[key]
+    return by_type
 
 
 def ground_actions(

@@ -132,6 +132,6 @@ def _static_guard(schema: Action, binding: Binding, achieved: Literal, world: St
             for inner in bindings(effect.variables, binding, world):
                 if fact_of(effect.atom, inner) == achieved.fact:
                     static = static_literals(formulas, inner, world)
-                    if all((x.fact in world.facts) == x.positive for x in static):
+                    if all(x.holds_in(world.facts) for x in static):
                         return static
     return ()

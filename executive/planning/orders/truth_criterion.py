@@ -52,7 +52,7 @@ class TruthCriterion:
         if literal is None:
             return "it is false of its objects"
         achievers = self.makers.get(literal, 0) & sure
-        initially = (literal.fact in self.objects.initial) is literal.positive
+        initially = literal.holds_in(self.objects.initial)
         if not achievers and not initially:
             return "nothing makes it true before"
         for n in bits_of(self.makers.get(Literal(literal.fact, not literal.positive), 0) & possible):

@@ -5,7 +5,7 @@ Neither reads nor plans. Names are in lower case; a term that begins with "?" is
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from typing import Literal as OneOf
 
@@ -24,6 +24,10 @@ class Literal:
     def __str__(self) -> str:
         atom = f"({' '.join(self.fact)})"
         return atom if self.positive else f"(not {atom})"
+
+    def holds_in(self, facts: Set[Fact]) -> bool:
+        """Whether it holds in a state, which lists what is true."""
+        return (self.fact in facts) is self.positive
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ def _fault(link: Link, starts: dict[int, float], deadlines: dict[int, float], ob
         return "runs backward in time"
     if link.producer == 0:
         timed = any(t.literal == link.literal for t in objects.problem.timed)
-        holds = (link.literal.fact in objects.initial) == link.literal.positive
+        holds = link.literal.holds_in(objects.initial)
         return "" if timed or holds else "supports nothing: the literal does not hold initially"
     action, binding = bound[link.producer]
     effects = [effect for effect in action.effects if effect.positive == link.literal.positive]

@@ -103,7 +103,7 @@ class Regression:
             self._unmet -= not self._holds(literal)
 
     def _holds(self, literal: Literal) -> bool:
-        return (literal.fact in self._state) is literal.positive
+        return literal.holds_in(self._state)
 
 
 def conjunction(formula: Formula, binding: Binding) -> Sequence[Literal | None]:
