@@ -15,6 +15,7 @@ from tailor.executive.planning.pddl.language import Atom, Equal, Formula, Not, T
 Slot = int | str  # number of a variable, or an object
 Table = dict[tuple[str, ...], list[Fact]]
 Test = Callable[[Sequence[str]], bool]
+Key = Callable[[Sequence[str]], tuple[str, ...]]
 
 
 class FactIndex:
@@ -68,17 +69,17 @@ class FactIndex:
 
 @dataclass(frozen=True, slots=True)
 class JoinStep:
-    """Looks facts up by what is bound, and binds the variables of their other arguments."""
+    """Looks facts up by what is bound (`key`), and binds the variables of their other arguments."""
 
     table: Table
-    key: tuple[Slot, ...]
+    key: Key
     fresh: tuple[tuple[int, int, frozenset[str]], ...]  # position in the fact, variable, objects of its types
     checks: tuple[tuple[int, Slot], ...]  # position, and what it must equal
     tests: tuple[Test, ...]  # of which the last variable is bound here
 
     def candidates(self, binding: Sequence[str]) -> Sequence[Fact]:
         """The facts that agree with what is bound."""
-        return self.table.get(tuple([binding[t] if isinstance(t, int) else t for t in self.key]), ())
+        return self.table.get(self.key(binding), ())
 
     def bind(self, fact: Fact, binding: list[str]) -> bool:
         """Writes the fact's arguments into the binding; False if a type, another variable or a test excludes them."""
@@ -99,7 +100,7 @@ class JoinPlan:
 
     trigger: JoinStep
     steps: tuple[JoinStep, ...]
-    heads: tuple[tuple[str, tuple[Slot, ...]], ...]
+    heads: tuple[Key, ...]  # the facts that it adds, of a complete binding
 
 
 class _Planner:
@@ -146,13 +147,13 @@ class _Planner:
         self.bound.update(fresh)
         table = self._index.table(atom.predicate, tuple(key)) if atom and lookup else {}
         narrowed = tuple((position, slot, self._allowed(slot)) for position, slot in fresh.values())
-        return JoinStep(table, tuple(key.values()), narrowed, tuple(checks), self._ready_tests())
+        return JoinStep(table, _tuple_getter(tuple(key.values())), narrowed, tuple(checks), self._ready_tests())
 
     def choice(self, variable: int) -> JoinStep:
         """The step that tries every object of a variable that no atom binds."""
         self.bound.add(variable)
         table, _ = self._index.objects(self._variables[variable])
-        return JoinStep(table, (), ((1, variable, self._allowed(variable)),), (), self._ready_tests())
+        return JoinStep(table, _tuple_getter(()), ((1, variable, self._allowed(variable)),), (), self._ready_tests())
 
     def _allowed(self, variable: int) -> frozenset[str]:
         """Those of a variable's objects of which all static facts about it alone hold: no test of each binding."""
@@ -196,7 +197,7 @@ def join_plan(rule: Rule, trigger: Atom | None, index: FactIndex, world: StaticW
         planner.left.remove(atom)
         steps.append(planner.step(atom))
     steps += [planner.choice(n) for n in range(len(rule.variables)) if n not in planner.bound]
-    heads = tuple((atom.predicate, planner.slots(atom.terms)) for atom in rule.head)
+    heads = tuple(_tuple_getter((atom.predicate, *planner.slots(atom.terms))) for atom in rule.head)
     return JoinPlan(first, tuple(steps), heads)
 
 
@@ -211,6 +212,18 @@ def _compiled(test: Formula, planner: _Planner) -> Test:
     assert isinstance(test, Atom)
     terms, predicate, facts = [_getter(slot) for slot in planner.slots(test.terms)], test.predicate, planner.world.facts
     return lambda binding: (predicate, *[term(binding) for term in terms]) in facts
+
+
+def _tuple_getter(slots: tuple[Slot, ...]) -> Key:
+    """The values of several slots as a function of the binding: one plan makes hundreds of thousands of such tuples."""
+    match slots:
+        case (int(only),):
+            return lambda binding: (binding[only],)
+        case (str(name), int(first)):
+            return lambda binding: (name, binding[first])
+        case (str(name), int(first), int(second)):
+            return lambda binding: (name, binding[first], binding[second])
+    return lambda binding: tuple([binding[slot] if isinstance(slot, int) else slot for slot in slots])
 
 
 def _getter(slot: Slot) -> Callable[[Sequence[str]], str]:

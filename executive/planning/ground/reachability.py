@@ -99,8 +99,8 @@ class Reachability:
                     continue
                 arguments[found] = None  # counted here: what is too much to make is not even reached
                 self._limit.spend(INSTANCE_STEPS + len(plan.heads) // HEADS_PER_STEP)
-            for predicate, terms in plan.heads:
-                reached = (predicate, *[found[t] if isinstance(t, int) else t for t in terms])
+            for head in plan.heads:
+                reached = head(found)
                 if reached not in self._known:
                     self._known[reached] = None
                     self._pending.append(reached)
