@@ -11,6 +11,7 @@ setup: .venv/.installed
 .venv/.installed: pyproject.toml constraints.txt
 	@$(PYTHON) -c '$(OLD)'
 	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25'  # the one that Python brings may resolve for a minute
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -c constraints.txt -e '.[$(EXTRAS)]'
 	@$(BIN)/python -m compileall -qq -j 0 -x 'site-packages/.*/tests/' .venv/lib || true  # pip would do so on one core; some examples in there are of Python 2
 	@$(BIN)/python -m compileall -q -j 0 executive models robots runtime schemas simnodes src tools  # or each start compiles them: 0.3 s

@@ -72,7 +72,7 @@ def assert_no_stage_costs_less(cost, chosen, lower, upper, inside) -> None:
         whole, before = everywhere, own
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 3 * TASKS - 1), st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.5, 1.0, 2.0]), st.booleans())
 def test_no_values_in_a_pair_of_boxes_cost_less_than_its_bound(models, tasks, task, seed, k_std, exact):
     rng = np.random.default_rng(seed)
@@ -94,7 +94,7 @@ def fetching() -> SequenceObjective:
     return SequenceObjective((drive, grip), case.variables, models, RefinementSettings())
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_no_values_cost_less_than_a_bound_that_ignores_furniture(fetching, seed):
     rng = np.random.default_rng(seed)

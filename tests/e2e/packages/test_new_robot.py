@@ -12,7 +12,7 @@ from tests.support.bus_system import ROOT
 PORTER = ROOT / "tests" / "support" / "robots" / "porter"
 FORKLIFT = ROOT / "tests" / "support" / "robots" / "forklift"
 EPISODES = 120  # few, for time's sake: enough to learn from
-FAST = ("--learner", "m5")  # 25 s less than the default one, which the new arm and the tutorial train with
+FAST = ("--learner", "m5")  # a minute less than the default one, which the tutorial trains with
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("systems")]
 
@@ -30,9 +30,9 @@ def run(environment, tmp_path):
     return output
 
 
-def from_episodes_to_a_verified_run(run, folder, domain, robot, learner=FAST):
+def from_episodes_to_a_verified_run(run, folder, domain, robot):
     run(folder, "tailor", "gather", robot, "--episodes", EPISODES, "--jobs", 2)
-    run(folder, "tailor", "train", robot, *learner)
+    run(folder, "tailor", "train", robot, *FAST)
     run(folder, "tailor", "up", domain, "--once", "--record", "run.mcap", "--connect", free_endpoint())
     assert "equal" in run(folder, "tailor", "verify", "run.mcap")
     run(folder, "tailor", "view", "run.mcap", "-o", "run.html")
@@ -45,7 +45,7 @@ def test_a_new_robot_runs_with_no_line_edited(kind, environment, run, tmp_path):
     run(tmp_path, "tailor", "new", "robot", name, "--kind", kind)
     folder = tmp_path / name
     environment.install("--no-build-isolation", "--editable", folder)
-    from_episodes_to_a_verified_run(run, folder, name, name, () if kind == "arm" else FAST)
+    from_episodes_to_a_verified_run(run, folder, name, name)
     assert (folder / f"fresh_{kind}" / "models" / name).is_dir()
     if kind == "wheeled":
         script = ROOT / "tests" / "e2e" / "packages" / "drive_plain_robot.py"

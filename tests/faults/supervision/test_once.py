@@ -20,7 +20,7 @@ def child_if_any(parent, name):
     return None
 
 
-@pytest.mark.parametrize("name", ["executive", "sim"])
+@pytest.mark.parametrize("name", ["executive", pytest.param("sim", marks=pytest.mark.slow)])
 def test_a_run_ends_when_a_process_of_it_is_started_again(name):
     words = tailor("up", "soccer", "--once", "--connect", free_endpoint())
     up = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

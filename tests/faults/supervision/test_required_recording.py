@@ -69,7 +69,7 @@ def test_nothing_moves_when_its_recording_cannot_be_written(tries, load, place, 
 
 @pytest.mark.promise("P51")
 @pytest.mark.xdist_group("systems")
-@pytest.mark.parametrize("way", ["killed", "full disk"])
+@pytest.mark.parametrize("way", [pytest.param("killed", marks=pytest.mark.slow), "full disk"])
 def test_a_run_that_requires_its_recording_ends_with_it(way, tmp_path):
     with launched(tmp_path, "--require-recording") as system:
         wait_until(system.moves, "robot moves")

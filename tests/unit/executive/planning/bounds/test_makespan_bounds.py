@@ -51,7 +51,7 @@ TASK = st.builds(
     st.lists(st.sampled_from(FACTS), max_size=2, unique=True),
     st.lists(GOALS, min_size=1, max_size=3, unique=True),
 )  # fmt: skip
-RELAXED = settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+RELAXED = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 class Ancestry(GroundSpace):
