@@ -26,6 +26,9 @@ HALT_NS = 800_000_000
 HALT_COST_S = 3.0  # expected price of the failures that a halt must save: it takes half of that, and loses speed
 AT_RISK = Cause(Reason.COURSE_AT_RISK)
 LOST_TICKS = 3  # in a row for which a fact is not observed: a percept that is wrong once changes no plan
+# Each time that a plan was given up for a fact it must be missing for twice as long, at most 4.8 s: a percept that
+# comes and goes would otherwise turn the robot around again and again.
+MAX_DOUBLINGS = 4
 
 
 def risk_of_course(context: Context, belief: Belief, decision: Decision) -> tuple[float, bool]:
@@ -46,10 +49,14 @@ def with_supports_checked(context: Context, state: State) -> State:
     running = state.task.running
     if running is None or state.mode is not Mode.EXECUTING or not (running.asserted or running.action.subgoal_action):
         return state
-    missing = _lost_support(context, state, running)
-    count = running.unsupported + 1 if missing is not None else 0
-    lost = Cause(Reason.SUPPORT_LOST, str(missing)) if count >= LOST_TICKS else running.lost
-    return replace(state, task=replace(state.task, running=replace(running, unsupported=count, lost=lost)))
+    task, missing = state.task, _lost_support(context, state, running)
+    if missing is None:
+        return replace(state, task=replace(task, running=replace(running, unsupported=0, is_lost=False)))
+    running = replace(running, unsupported=running.unsupported + 1)
+    if not running.is_lost and running.unsupported >= LOST_TICKS << min(task.lost.count(missing), MAX_DOUBLINGS):
+        running = replace(running, is_lost=True, lost=Cause(Reason.SUPPORT_LOST, str(missing)))
+        task = replace(task, lost=(*task.lost, missing))
+    return replace(state, task=replace(task, running=running))
 
 
 def _lost_support(context: Context, state: State, running: Running) -> planning.Literal | None:

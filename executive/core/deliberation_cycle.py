@@ -7,7 +7,7 @@ from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.adoption import adopted
-from tailor.executive.core.course import HALT_COST_S, LOST_TICKS, halted, risk_of_course, shortened
+from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
@@ -73,7 +73,7 @@ def _with_deliberation(context: Context, state: State) -> State:
         return state
     idle = task.running is None and task.decision is None
     if task.running is not None and task.decision is not None:
-        if task.running.unsupported < LOST_TICKS:
+        if not task.running.is_lost:
             state, anew = _on_its_way(context, state, task.decision, ongoing)
             if not anew:
                 return state

@@ -29,7 +29,8 @@ class Running:
     controller_state: Any = None
     interval_s: tuple[float, float] | None = None  # that the duration lies in with 90 %; None: the model has none
     unsupported: int = 0  # ticks in a row for which a fact has been missing that the plan needs
-    lost: Cause | None = None  # that fact, once it has been missing for so long that the plan is given up
+    is_lost: bool = False  # whether one has been missing for so long that another plan is searched for
+    lost: Cause | None = None  # the last such fact
 
     def elapsed_s(self, now_ns: int) -> float:
         """Seconds since the action started."""

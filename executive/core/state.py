@@ -17,7 +17,7 @@ from tailor.executive.interfaces.domain_results import first_belief
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Result
 from tailor.executive.interfaces.values import Belief, Fact
-from tailor.executive.planning import GroundCache, Plan
+from tailor.executive.planning import GroundCache, Literal, Plan
 from tailor.schemas.messages import DriverState, Message, Sample
 from tailor.schemas.reason_text import reason_text
 
@@ -67,6 +67,7 @@ class Task:
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
     failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since a step of the plan succeeded
+    lost: tuple[Literal, ...] = ()  # for want of which plans were given up since the goal was set
     unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them
     approached: tuple[Fact, ...] = ()  # ground actions whose asserted subgoals were reached, since each was done
     running: Running | None = None

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.core.course import HALT_NS, with_supports_checked
+from tailor.executive.core.course import HALT_NS, LOST_TICKS, with_supports_checked
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import Settings, make_context
@@ -195,6 +195,23 @@ def test_what_a_later_step_brings_about_is_not_watched():
         with_supports_checked(context_of(WatchingLine()), each).task.running.unsupported for each in (state, changed)
     ]
     assert (len(links), counts) == (1, [1, 0])
+
+
+class TornLine(RoadLine):
+    """The same robot, which always sees one road only of the last two: what comes and goes turns it around."""
+
+    problem = RoadLine.problem.replace("(road home a)", "(road home a) (road a home) (road c home) (road d c)")
+    other = ("road", "d", "b")
+
+    def anchor(self, belief, scenario, remembered):
+        seen, unseen = (self.other, self.fact) if belief.lost else (self.fact, self.other)
+        return (remembered | {seen}) - {unseen}
+
+
+def test_a_percept_that_comes_and_goes_turns_the_robot_around_once_for_each_fact():
+    found = run(lambda tick: tick // LOST_TICKS % 2 == 0, TornLine(), ticks=200)
+    assert [detail for _, _, reason, detail in ends(found) if reason] == ["(road d b)", "(road a b)"]
+    assert reasons(found).count("") >= 3
 
 
 @settings(max_examples=40, deadline=None)
