@@ -7,6 +7,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 
 from tailor import __version__
 from tailor.schemas.errors import UnreachableError, UsageError
@@ -74,6 +75,7 @@ GROUPS = {
     "completion": "the shell",
 }
 PRINTING = [[name] for name in ("completion", "compare", "info", "models", "plan", "why")]  # what they print is all
+URGENT = [["estop"]]
 WITH_WORKERS = ("learn", "measure")  # groups of commands that start processes of their own
 
 
@@ -89,6 +91,8 @@ def main(argv: Sequence[str] | None = None) -> int:
       systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
+    if argv is None and arguments[:1] in URGENT:
+        _take_cpu_first()
     into_file = any(each.startswith(("-o", "--output")) for each in arguments)
     replace_closed_streams(prints=arguments[:1] in PRINTING and not into_file)
     name = " ".join(["tailor", *arguments[:1]])
@@ -121,6 +125,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         _report(f"{plain(name)}: {plain(f'{path}{error.strerror or error}{expected}')}")
         drop_failed_output()
         return 1 if error.filename is None else 2
+
+
+def _take_cpu_first() -> None:
+    """Where the system permits it, and before the command is loaded: on busy cores that takes most of a second."""
+    with suppress(OSError):
+        os.setpriority(os.PRIO_PROCESS, 0, -20)
 
 
 def _replace_what_cannot_be_printed() -> None:

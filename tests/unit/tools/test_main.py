@@ -3,6 +3,7 @@
 import argparse
 import importlib
 import io
+import os
 import re
 import shlex
 import subprocess
@@ -30,6 +31,20 @@ def test_the_overview_lists_every_command(capsys, arguments):
     assert main(arguments) == 0
     listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     assert sorted(listed) == sorted(COMMANDS)
+
+
+def priority_of(code, *arguments):
+    """The nice value of a new process after some code."""
+    code = f"import os\ntry:\n    {code}\nexcept (OSError, SystemExit): pass\nprint(os.getpriority(os.PRIO_PROCESS, 0))"
+    done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, cwd=ROOT)
+    return int(done.stdout.splitlines()[-1])
+
+
+def test_an_estop_gets_the_cpu_first_where_the_system_permits_it():
+    call = "from tailor.tools.main import main; main()"
+    permitted = priority_of("os.setpriority(os.PRIO_PROCESS, 0, -20)")
+    assert priority_of(call, "estop", "--help") == permitted
+    assert priority_of(call, "status", "--help") == os.getpriority(os.PRIO_PROCESS, 0)
 
 
 def test_an_unknown_command_is_reported_in_one_line(capsys):
