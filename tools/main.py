@@ -75,7 +75,7 @@ GROUPS = {
     "completion": "the shell",
 }
 PRINTING = [[name] for name in ("completion", "compare", "info", "models", "plan", "why")]  # what they print is all
-URGENT = [["estop"]]
+URGENT = [["estop"], ["arm"]]  # both stop robots: arm --off
 WITH_WORKERS = ("learn", "measure")  # groups of commands that start processes of their own
 
 

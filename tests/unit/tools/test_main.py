@@ -40,10 +40,11 @@ def priority_of(code, *arguments):
     return int(done.stdout.splitlines()[-1])
 
 
-def test_an_estop_gets_the_cpu_first_where_the_system_permits_it():
+@pytest.mark.parametrize("name", ["estop", "arm"])
+def test_what_stops_robots_gets_the_cpu_first_where_the_system_permits_it(name):
     call = "from tailor.tools.main import main; main()"
     permitted = priority_of("os.setpriority(os.PRIO_PROCESS, 0, -20)")
-    assert priority_of(call, "estop", "--help") == permitted
+    assert priority_of(call, name, "--help") == permitted
     assert priority_of(call, "status", "--help") == os.getpriority(os.PRIO_PROCESS, 0)
 
 
