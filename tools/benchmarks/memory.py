@@ -26,6 +26,7 @@ class Usage:
 
     resident_mb: float
     peak_mb: float
+    own_mb: float  # of the resident what is no file's, of which the kernel maps more or fewer pages at once
     minor_faults: int  # of its main thread so far: pages found in memory
     major_faults: int  # pages read from the disk
 
@@ -33,9 +34,10 @@ class Usage:
     def of(cls, pid: int) -> Usage:
         """Usage of a running process; raises OSError if it has ended."""
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()
-        kb = {line.split(":")[0]: int(line.split()[1]) for line in lines if line.startswith("Vm")}
+        kb = {line.split(":")[0]: int(line.split()[1]) for line in lines if line.startswith(("Vm", "Rss"))}
         stat = Path(f"/proc/{pid}/task/{pid}/stat").read_text().rpartition(")")[2].split()
-        return cls(kb["VmRSS"] / 1000, kb["VmHWM"] / 1000, int(stat[7]), int(stat[9]))
+        own_kb = kb["RssAnon"] + kb["RssShmem"]
+        return cls(kb["VmRSS"] / 1000, kb["VmHWM"] / 1000, own_kb / 1000, int(stat[7]), int(stat[9]))
 
 
 def run(console: Console, quick: bool) -> None:
