@@ -210,8 +210,8 @@ def _compiled(test: Formula, planner: _Planner) -> Test:
         left, right = (_getter(slot) for slot in planner.slots((test.left, test.right)))
         return lambda binding: left(binding) == right(binding)
     assert isinstance(test, Atom)
-    terms, predicate, facts = [_getter(slot) for slot in planner.slots(test.terms)], test.predicate, planner.world.facts
-    return lambda binding: (predicate, *[term(binding) for term in terms]) in facts
+    fact, facts = _tuple_getter((test.predicate, *planner.slots(test.terms))), planner.world.facts
+    return lambda binding: fact(binding) in facts
 
 
 def _tuple_getter(slots: tuple[Slot, ...]) -> Key:
