@@ -91,7 +91,7 @@ def main(argv: Sequence[str] | None = None) -> int:
       systemd, may try again.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if argv is None and arguments[:1] in URGENT:
+    if argv is None and arguments[:1] in URGENT:  # a program that calls this keeps its own priority
         _take_cpu_first()
     into_file = any(each.startswith(("-o", "--output")) for each in arguments)
     replace_closed_streams(prints=arguments[:1] in PRINTING and not into_file)

@@ -43,12 +43,11 @@ def disarmed(robot):
 
 @pytest.mark.slow  # its burners would disturb all tests beside it
 @pytest.mark.promise("P52")
-@pytest.mark.parametrize("tries", [20])
-def test_disarming_is_confirmed_on_a_busy_machine(tmp_path, tries):
+def test_disarming_is_confirmed_on_a_busy_machine(tmp_path):
     with guarded_robot(tmp_path) as (session, endpoint, start, trace):
         robot = Driven(session, endpoint, start, trace)
         with burners():
-            for _ in range(tries):
+            for _ in range(20):
                 disarmed(robot)
 
 

@@ -208,6 +208,7 @@ class TornLine(RoadLine):
         return (remembered | {seen}) - {unseen}
 
 
+@pytest.mark.promise("P30")
 def test_a_percept_that_comes_and_goes_turns_the_robot_around_once_for_each_fact():
     found = run(lambda tick: tick // LOST_TICKS % 2 == 0, TornLine(), ticks=200)
     assert [detail for _, _, reason, detail in ends(found) if reason] == ["(road d b)", "(road a b)"]

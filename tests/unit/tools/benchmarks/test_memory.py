@@ -12,8 +12,10 @@ from tailor.tools.benchmarks.ticks import wait_for_router
 from tailor.tools.launch.hosting import free_endpoint
 from tests.support.patience import wait_until
 
-EXECUTIVE_MB = 82 if sys.version_info < (3, 12) else 97  # later Pythons take some 10 MB more
-OTHERS_MB = 82  # of the launcher, the simulator and the recorder each
+LATER_MB = 0 if sys.version_info < (3, 12) else 15  # later Pythons take some 10 MB more
+OWN_MB = 82 + LATER_MB
+EXECUTIVE_MB = 170 + LATER_MB  # with the libraries, of which it has 69 or 77 MB, by how their files were written
+OTHERS_MB = 150  # of the launcher, the simulator and the recorder each
 
 
 @pytest.mark.xdist_group("systems")
@@ -30,6 +32,8 @@ def test_an_executive_in_motion_takes_82_mb_of_its_own_with_all_that_is_locked(t
             assert ticks.drain()
         pids = processes_of(launcher.pid)
         usage = {name: Usage.of(pid) for name, pid in pids.items()} | {"up": Usage.of(launcher.pid)}
-    print({name: round(each.own_mb) for name, each in usage.items()})
-    assert usage.pop("executive").own_mb <= EXECUTIVE_MB
-    assert max(each.own_mb for each in usage.values()) <= OTHERS_MB
+    print({name: (round(each.own_mb), round(each.peak_mb)) for name, each in usage.items()})
+    executive = usage.pop("executive")
+    assert executive.own_mb <= OWN_MB
+    assert executive.peak_mb <= EXECUTIVE_MB
+    assert max(each.peak_mb for each in usage.values()) <= OTHERS_MB
