@@ -94,7 +94,7 @@ class _System:
         self._result = self._last_step = ""
 
     def run(self) -> str:
-        """Start process after process, each once the one before is ready; then supervise them."""
+        """Start the recorder, and the others once it is ready; supervise them once the robot is."""
         config, senders = self._config, self._senders
         for gateway in gateways(config.bus):
             self._supervisor.start(gateway, time.monotonic_ns())
@@ -103,21 +103,26 @@ class _System:
         if config.scene:  # before the executive, so that it takes no time from its first ticks
             self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
         robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
-        if not self._start(robot):
+        self._supervisor.start(robot, time.monotonic_ns())
+        self._supervisor.start(executive_process(config, senders), time.monotonic_ns())  # it loads meanwhile, and waits
+        if not self._is_ready(robot.name):
             failure = self._not_started("driver" if config.hardware else "simulator")
             if failure and self._supervisor.refused(robot.name):  # it has printed why: an extra is missing, say
                 raise UsageError(failure)
             return failure
-        self._supervisor.start(executive_process(config, senders), time.monotonic_ns())
         return self._supervise()
 
     def _start(self, spec: ProcessSpec) -> bool:
-        """Start a process; False if it ends before it is ready, is not ready in time, or on a stop request."""
+        """Start a process; see `_is_ready`."""
         self._supervisor.start(spec, time.monotonic_ns())
-        while self._supervisor.state(spec.name) is State.STARTING and not self._stop.requested:
+        return self._is_ready(spec.name)
+
+    def _is_ready(self, name: str) -> bool:
+        """Wait for a process; False if it ends before it is ready, is not ready in time, or on a stop request."""
+        while self._supervisor.state(name) is State.STARTING and not self._stop.requested:
             time.sleep(0.02)
             self._poll(time.monotonic_ns())
-        return self._supervisor.state(spec.name) is State.RUNNING
+        return self._supervisor.state(name) is State.RUNNING
 
     def _not_started(self, what: str) -> str:
         """Failure of a process, or "" if a stop was requested before it was ready."""
