@@ -128,9 +128,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _take_cpu_first() -> None:
-    """Where the system permits it, and before the command is loaded: on busy cores that takes most of a second."""
-    with suppress(OSError):
-        os.setpriority(os.PRIO_PROCESS, 0, -20)
+    """Where the system permits it, and before the command is loaded: on busy cores that takes most of a second.
+
+    The least real-time priority, below every loop: a nice value counts only among the processes of one terminal where
+    the kernel groups them (sched_autogroup_enabled), as it does on desktops.
+    """
+    try:
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
+    except OSError:
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, 0, -20)
 
 
 def _replace_what_cannot_be_printed() -> None:
