@@ -8,12 +8,11 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, suppre
 from functools import cache
 
 from tailor.runtime.bus import zenoh_config
-from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password, UnfitKeyError
 from tailor.runtime.bus.rights.hosted_folder import hosted
 from tailor.runtime.bus.rights.key_faults import check_files, out_of_date
 from tailor.runtime.bus.rights.router_faults import fault_of_router
-from tailor.runtime.bus.rights.run_folder import SOCKET, RunFolder, run_folder
+from tailor.runtime.bus.rights.run_folder import GATEWAY, SOCKET, RunFolder, run_folder
 from tailor.runtime.bus.session import CannotOpenError, Session, opened
 from tailor.runtime.descriptors import CLIENT, ROUTER, require_descriptors
 from tailor.runtime.realtime import elevate_bus_threads, inherited_fifo
@@ -54,7 +53,7 @@ def open_local_router(
     Raises:
       UsageError: The bus runs already, or its folder cannot be made.
     """
-    users = (*ROLES, access.GATEWAY) if secured else ()
+    users = (*ROLES, GATEWAY) if secured else ()
     with ExitStack() as stack:
         folder = stack.enter_context(hosted(endpoint, users, keys))
         with inherited_fifo():

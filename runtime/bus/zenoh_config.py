@@ -11,9 +11,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tailor.runtime.bus.rights import access
 from tailor.runtime.bus.rights.credentials import Identity, Password
-from tailor.runtime.bus.rights.run_folder import CERTIFICATE_USER, RunFolder
+from tailor.runtime.bus.rights.run_folder import CERTIFICATE_USER, GATEWAY, RunFolder
 from tailor.schemas.errors import UsageError
 from tailor.schemas.packages.package_topics import PRIORITIES as TOPIC_PRIORITIES
 from tailor.schemas.services import ROLES, Role
@@ -61,16 +60,15 @@ def _base(mode: str) -> dict[str, Any]:
 
 def router(listen: str) -> str:
     """JSON of an open router that listens at one endpoint and connects to none; a port in use is an error at once."""
-    config = _listening(check_endpoint(listen)) | {"downsampling": access.rate_limits()}
+    config = _listening(check_endpoint(listen))
     return json.dumps(config | {"connect": {"endpoints": []}})
 
 
 def local_router(folder: RunFolder) -> str:
     """JSON of the router of one machine: it listens at the socket of a run folder alone, secured if that has users."""
-    config = _listening(folder.socket_endpoint) | {"connect": {"endpoints": []}}
-    config |= {"downsampling": access.rate_limits(access.LOCAL_LIMIT_HZ)}
+    config = _listening(folder.socket_endpoint, local=True) | {"connect": {"endpoints": []}}
     if folder.secured:
-        subjects = [{"id": name, "usernames": [name]} for name in (*ROLES, access.GATEWAY)]
+        subjects = [{"id": name, "usernames": [name]} for name in (*ROLES, GATEWAY)]
         config |= _secured(subjects)
         config["transport"]["auth"] = {"usrpwd": {"dictionary_file": str(folder.users_file)}}
     return json.dumps(config)
@@ -92,13 +90,13 @@ def gateway(
       names: Role of each certificate's common name, for a TLS endpoint.
       roles: Sessions of other roles may do nothing here.
     """
-    config = _listening(check_endpoint(listen)) | {"downsampling": access.rate_limits()}
+    config = _listening(check_endpoint(listen))
     config["connect"] = _connecting([folder.socket_endpoint], CONNECT_MS)
-    password = folder.password(access.GATEWAY)
+    password = folder.password(GATEWAY)
     if password is not None:
-        own = Password(access.GATEWAY, password)
+        own = Password(GATEWAY, password)
         config["transport"]["auth"] = own.auth(folder.users_file if identity is None else folder.certificate_users_file)
-        inwards = {"id": access.GATEWAY, "link_protocols": ["unixsock-stream"]}
+        inwards = {"id": GATEWAY, "link_protocols": ["unixsock-stream"]}
         config |= _secured([*_subjects(names, identity, roles), inwards])
     if identity is not None:
         config["transport"]["link"]["tls"] = identity.listening()
@@ -136,8 +134,11 @@ def foreign_client(connect: str, folder: Path) -> str:
     return json.dumps(config | {"listen": {"endpoints": []}}, indent=2)
 
 
-def _listening(endpoint: str) -> dict[str, Any]:
+def _listening(endpoint: str, local: bool = False) -> dict[str, Any]:
+    from tailor.runtime.bus.rights import access  # which no client needs: a fifth of the start of an e-stop
+
     config = _base("router")
+    config["downsampling"] = access.rate_limits(access.LOCAL_LIMIT_HZ if local else access.PEER_LIMIT_HZ)
     config["listen"] = {"endpoints": [endpoint], "timeout_ms": 0, "exit_on_failure": True}
     config["transport"]["unicast"] = {"accept_pending": MAX_PENDING, "accept_timeout": ACCEPT_MS}
     return config
@@ -153,4 +154,6 @@ def _connecting(endpoints: Sequence[str], timeout_ms: int) -> dict[str, Any]:
 
 
 def _secured(subjects: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    from tailor.runtime.bus.rights import access
+
     return {"access_control": access.access_control(subjects), "low_pass_filter": access.size_limits()}

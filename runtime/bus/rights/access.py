@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tailor.runtime.bus.rights.ros_access import ALL_TOKENS, action_topic_keys, service_keys, tokens
+from tailor.runtime.bus.rights.run_folder import GATEWAY
 from tailor.schemas.messages import EStop
 from tailor.schemas.ros2.action import MAX_TOPIC_BYTES
 from tailor.schemas.ros2.profiles import ros_patterns
 from tailor.schemas.services import MAX_REQUEST_BYTES, ROLES, SERVICES, Role
 from tailor.schemas.topics import TOPICS, Source, Topic
 
-GATEWAY = "gateway"  # user name of the process that listens for other machines; it has applied these rules already
 PEER_LIMIT_HZ = 1000.0  # e-stops of one peer; a flood brings 50 000
 LOCAL_LIMIT_HZ = 5000.0  # of all peers behind one gateway together
 _PUBLISHERS: dict[Source, tuple[Role, ...]] = {

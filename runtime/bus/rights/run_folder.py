@@ -21,6 +21,7 @@ VARIABLE = "TAILOR_RUN_DIR"  # replaces the folder of all runs, e.g. with a serv
 SOCKET, USERS, LOCK, CERTIFICATE_USERS = "bus.sock", "users", "lock", "certificate-users"
 PROFILE = "key-profile"
 CERTIFICATE_USER = "certificate:none"
+GATEWAY = "gateway"  # user of the process that listens for other machines; it has applied the access rules already
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,13 +40,23 @@ WITHOUT = {
 }
 
 
-@pytest.mark.parametrize("name", WITHOUT)
-def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
-    module = "tailor.tools.main" if name == "main" else COMMANDS[name][0]
+def modules_of(module):
+    """Names of the modules that a new process has loaded after importing one."""
     code = f"import sys, {module}; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT).stdout
     assert module in loaded.split()
-    assert {name.removeprefix("tailor.").split(".")[0] for name in loaded.split()} & WITHOUT[name] == set()
+    return set(loaded.split())
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_command_loads_nothing_heavy_that_it_does_not_need(name):
+    loaded = modules_of("tailor.tools.main" if name == "main" else COMMANDS[name][0])
+    assert {name.removeprefix("tailor.").split(".")[0] for name in loaded} & WITHOUT[name] == set()
+
+
+@pytest.mark.parametrize("name", ["estop", "arm", "sim", "executive"])
+def test_a_client_of_the_bus_loads_no_rules_of_its_router(name):
+    assert "tailor.runtime.bus.rights.access" not in modules_of(COMMANDS[name][0])
 
 
 RUN = """
