@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive import planning
-from tailor.executive.core.course import halted, redirected, starts_another
+from tailor.executive.core.course import halted, halted_if_lost, redirected, starts_another
 from tailor.executive.core.execution import Running
 from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.state import State, Task
@@ -25,7 +25,7 @@ def adopted(context: Context, state: State, decision: Decision, decided: bool) -
         return replace(state, task=_with_decision(task, decision, new_plan))
     running = _as_step_of(decision, task.running, task.plan)
     if starts_another(decision, running) and slow_inputs(context, state) is not None:
-        return state
+        return halted_if_lost(context, state)
     if task.decision is not None and decision.number == task.decision.number:
         return _redirected_if_better(context, state, running, task.decision, decision)
     if not decided:

@@ -26,6 +26,7 @@ HALT_NS = 800_000_000
 HALT_COST_S = 3.0  # expected price of the failures that a halt must save: it takes half of that, and loses speed
 AT_RISK = Cause(Reason.COURSE_AT_RISK)
 LOST_TICKS = 3  # in a row for which a fact is not observed: a percept that is wrong once changes no plan
+SEARCH_TICKS = 10  # for which a robot drives on while another plan than the lost one is searched for; then it brakes
 # Each time that a plan was given up for a fact it must be missing for twice as long, at most 4.8 s: a percept that
 # comes and goes would otherwise turn the robot around again and again.
 MAX_DOUBLINGS = 4
@@ -60,7 +61,7 @@ def with_supports_checked(context: Context, state: State) -> State:
 
 
 def _lost_support(context: Context, state: State, running: Running) -> planning.Literal | None:
-    """A literal that the plan takes from its start, that held as the running action was decided, and does not hold now.
+    """A literal that the plan takes from its start, and that does not hold now.
 
     Either a later step needs it, or the running action all along, as it does not change it (a prevail condition of
     SAS+, Bäckström and Nebel 1995). Predicates that the running action changes are in flux until it ends.
@@ -73,7 +74,7 @@ def _lost_support(context: Context, state: State, running: Running) -> planning.
     in_flux = {effect.atom.predicate for effect in context.pddl_domain.bound(action)[0].effects}
     for link in task.plan.links:
         literal, taken = link.literal, link.producer == 0 and link.literal.fact[0] not in in_flux
-        if taken and literal.holds_in(task.facts) and not literal.holds_in(facts):
+        if taken and not literal.holds_in(facts):
             return literal
     return None
 
@@ -86,6 +87,13 @@ def halted(context: Context, state: State, cause: Cause = AT_RISK) -> State:
     halt = Halt(state.now_ns + HALT_NS, cause)
     task, coasted = after_action(state.task), context.settings.coast_ticks
     return replace(state, task=task, deliberation=None, coasted=coasted, halt=halt)
+
+
+def halted_if_lost(context: Context, state: State) -> State:
+    """End an action whose plan has lost what it needs, since no other course follows it; any other one goes on."""
+    running = state.task.running
+    lost = running.lost if running is not None and running.is_lost else None
+    return state if lost is None else halted(context, state, lost)
 
 
 def shortened(context: Context, state: State) -> State:

@@ -7,7 +7,14 @@ from functools import partial
 
 from tailor.executive import planning
 from tailor.executive.core.adoption import adopted
-from tailor.executive.core.course import HALT_COST_S, halted, risk_of_course, shortened
+from tailor.executive.core.course import (
+    HALT_COST_S,
+    SEARCH_TICKS,
+    halted,
+    halted_if_lost,
+    risk_of_course,
+    shortened,
+)
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
@@ -73,10 +80,9 @@ def _with_deliberation(context: Context, state: State) -> State:
         return state
     idle = task.running is None and task.decision is None
     if task.running is not None and task.decision is not None:
-        if not task.running.is_lost:
-            state, anew = _on_its_way(context, state, task.decision, ongoing)
-            if not anew:
-                return state
+        state, anew = _on_its_way(context, state, task.decision, ongoing)
+        if not anew:
+            return state
     elif not idle or ongoing is not None:
         return state
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
@@ -93,7 +99,12 @@ def _on_its_way(context: Context, state: State, decision: Decision, ongoing: Del
     cost_s, risen = risk_of_course(context, state.belief, decision)
     if risen and cost_s > HALT_COST_S:  # also during a search, which may take a second where CPU time is scarce
         return halted(context, state), False
-    if ongoing is not None and not _is_followed(state, ongoing):
+    running, search = state.task.running, None if ongoing is None or _is_followed(state, ongoing) else ongoing
+    if running is not None and running.is_lost:
+        if search is None or search.ticks >= running.unsupported:  # it began before the fact was missing
+            return state, True
+        return halted_if_lost(context, state) if search.ticks >= SEARCH_TICKS else state, False
+    if search is not None:
         return state, False
     if risen or decision.watch.outdated(state.belief, decision.choice.values):
         return state, True
@@ -133,8 +144,7 @@ def _with_planner_failure(state: State, deliberation: Deliberation) -> State:
 
 def _with_failure(context: Context, state: State, cause: Cause | None) -> State:
     """Without a decision a running action continues while its plan holds; without an action the task has failed."""
-    running = state.task.running
-    if running is not None:
-        return halted(context, state, running.lost) if running.lost is not None else state
+    if state.task.running is not None:
+        return halted_if_lost(context, state)
     task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
     return replace(state, task=task)

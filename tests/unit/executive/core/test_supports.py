@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tailor.executive.core.course import HALT_NS, LOST_TICKS, with_supports_checked
+from tailor.executive.core.course import HALT_NS, LOST_TICKS, SEARCH_TICKS, with_supports_checked
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import Settings, make_context
@@ -45,7 +45,7 @@ class WatchingLine(LineDomain):
         for sample in samples:
             if isinstance(sample.message, Odometry):
                 lost = sample.message.phi == 1.0
-        return replace(super().update(belief, now_ns, samples, command), lost=lost, shift=0.0)
+        return replace(super().update(belief, now_ns, samples, command), lost=lost)
 
     def anchor(self, belief, scenario, remembered):
         seen = {self.fact} if self.fact[0] == "place" else set()
@@ -86,15 +86,20 @@ def context_of(domain):
     return make_context(domain, scenario, Models({"slide/duration": LineModel()}, {}), Settings(), SENDER)
 
 
-def run(lost, domain=None, ticks=60):
-    """The states and messages of ticks; `lost` tells at which ticks the fact is not observed."""
-    context = context_of(domain or WatchingLine())
-    state, x, found = initial_state(context), 0.0, []
+def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick: 2000, slow=()):
+    """The states and messages of ticks; `lost` tells at which ticks the fact is not observed.
+
+    `moved` tells how far the places are from where they were, `checks` how many are granted, `slow` when every other
+    sample is missing.
+    """
+    context = replace(context_of(domain or WatchingLine()), sensor_rates_hz={"odom": 50.0})
+    state, x, found, number = initial_state(context), 0.0, [], 0
     for tick in range(1, ticks + 1):
-        seen = odometry(tick * TICK, x, tick)
-        seen = replace(seen, message=replace(seen.message, phi=float(lost(tick))))
+        number += 2 if tick in slow else 5
+        seen = odometry(tick * TICK, x, tick, moved(tick))
+        seen = replace(seen, sequence=number, message=replace(seen.message, phi=float(lost(tick))))
         given = Inputs((seen, driver(tick * TICK)), context.problem.goal_text if tick == 1 else "")
-        state, outputs = step(context, state, tick * TICK, given, CheckBudget(2000))
+        state, outputs = step(context, state, tick * TICK, given, CheckBudget(checks(tick)))
         found.append((state, [output.message for output in outputs]))
         x += 0.1 * state.command[0]
     return found
@@ -213,6 +218,55 @@ def test_a_percept_that_comes_and_goes_turns_the_robot_around_once_for_each_fact
     found = run(lambda tick: tick // LOST_TICKS % 2 == 0, TornLine(), ticks=200)
     assert [detail for _, _, reason, detail in ends(found) if reason] == ["(road d b)", "(road a b)"]
     assert reasons(found).count("") >= 3
+
+
+def lost_for_good(tick):
+    return tick >= LOST_FROM
+
+
+@pytest.mark.promise("P30")
+@pytest.mark.parametrize("late", [-1, 0, 1])
+def test_a_fact_is_lost_as_well_if_a_place_moves_at_that_time(late):
+    """Another plan was searched for at once, from facts without it: that there was none was forgotten in each tick."""
+    found = run(lost_for_good, moved=lambda tick: 0.3 if tick >= LOST_FROM + late else 0.0)
+    assert ends(found) == [(LOST_FROM + 2, "aborted", Reason.SUPPORT_LOST, "(place b)")]
+    assert not any(commands(found)[LOST_FROM + 2 :])
+
+
+@pytest.mark.promise("P30")
+@pytest.mark.parametrize("domain", [WatchingLine, RoadLine])
+def test_a_robot_drives_on_for_a_second_while_another_plan_is_searched_for_and_then_brakes(domain):
+    given_up = LOST_FROM + 2 + SEARCH_TICKS
+    busy = range(LOST_FROM, given_up + 1)
+    found = run(lost_for_good, domain(), ticks=150, checks=lambda tick: 0 if tick in busy else 2000)
+    assert ends(found)[0][:3] == (given_up, "aborted", Reason.SUPPORT_LOST)
+    assert commands(found)[given_up - 1] > 0.4
+    assert commands(found)[given_up] == 0.0
+    assert found[-1][0].task.result == ("achieved" if domain is RoadLine else "failed")
+
+
+def test_a_search_from_before_the_fact_was_missing_is_begun_anew():
+    found = run(
+        lost_for_good,
+        moved=lambda tick: 0.3 if tick >= LOST_FROM - 1 else 0.0,
+        checks=lambda tick: 0 if LOST_FROM - 1 <= tick < LOST_FROM + 2 else 2000,
+    )
+    assert ends(found) == [(LOST_FROM + 2, "aborted", Reason.SUPPORT_LOST, "(place b)")]
+
+
+def test_a_fact_that_is_seen_again_before_it_is_known_that_no_plan_does_without_it_ends_nothing():
+    back = LOST_FROM + 5
+    found = run(lambda tick: LOST_FROM <= tick < back, checks=lambda tick: 0 if LOST_FROM <= tick < back else 2000)
+    assert commands(found) == commands(run(lambda tick: False))
+    assert reasons(found) == ["", ""]
+
+
+def test_a_plan_that_must_not_begin_yet_as_a_sensor_is_slow_begins_at_rest_once_it_is_not():
+    slow = range(2, 20)
+    found = run(lambda tick: tick >= 14, RoadLine(), ticks=150, slow=slow)
+    assert ends(found)[0] == (16, "aborted", Reason.SUPPORT_LOST, "(road a b)")
+    assert not any(commands(found)[17 : slow.stop + 1])
+    assert found[-1][0].task.result == "achieved"
 
 
 @settings(max_examples=40, deadline=None)
