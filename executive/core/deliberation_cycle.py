@@ -131,8 +131,8 @@ def _source(context: Context, state: State, problem: planning.Problem, number: i
     preparation = state.preparation if task.running is None else None
     reused = reuse(context, problem, task.plan, task.done, preparation) if task.plan is not None else None
     external = bool(context.settings.external.command) and not task.external_failed
-    request = partial(request_for, context, problem, number, state.now_ns) if external else None
-    return PlanSource(context, problem, state.ground, reused, request)
+    request = partial(request_for, context, problem, number) if external else None
+    return PlanSource(context, problem, state.ground, context.stamp(state.now_ns), reused, request)
 
 
 def _with_planner_failure(state: State, deliberation: Deliberation) -> State:

@@ -38,8 +38,9 @@ class PlanSource:
         context: Context,
         problem: planning.Problem,
         ground: planning.GroundCache,
+        stamp_ns: int,
         reuse: planning.Work[PlanFound | None] | None = None,
-        make_request: Callable[[], PlanRequest] | None = None,
+        make_request: Callable[[int], PlanRequest] | None = None,
     ) -> None:
         """Prepare the search; all work is done in `advance`.
 
@@ -47,12 +48,14 @@ class PlanSource:
           context: Domain and settings.
           problem: Problem to solve.
           ground: Grounding of earlier searches; reused while the objects stay the same.
+          stamp_ns: Stamp of this tick; that of each later one comes with `check_timeout`.
           reuse: Work whose result is a plan that is sound from the problem's initial state, or None. Nothing is
             searched or requested unless it ends without a plan.
-          make_request: Makes the request to the external planner, published by the caller; None: built-in search only.
+          make_request: Makes the request to an external planner from its stamp, published by the caller; None: built-in
+            search only.
         """
         self.request: PlanRequest | None = None  # until it is answered
-        self._make_request = make_request
+        self._stamp_ns, self._make_request = stamp_ns, make_request
         self._answer: PlanAnswer | None = None
         self._limit_s = context.settings.external.limit_s + GRACE_S
         self._after_plans = context.settings.external.after_plans
@@ -70,6 +73,7 @@ class PlanSource:
 
     def check_timeout(self, stamp_ns: int) -> None:
         """Count a request without an answer as timed out at `stamp_ns`, planner.limit_s plus GRACE_S after it."""
+        self._stamp_ns = stamp_ns
         if self.request is not None and stamp_ns - self.request.stamp_ns > self._limit_s * 1e9:
             self.receive(PlanAnswer(stamp_ns, self.request.id, "timeout", "", f"no answer within {self._limit_s:g} s"))
 
@@ -95,7 +99,7 @@ class PlanSource:
     def _request_if_due(self, ended: bool = False) -> None:
         """Make the request, once, as soon as the search has had its head start or has ended."""
         if self._make_request is not None and (ended or self._search.counts[1] >= self._after_plans):
-            self.request, self._make_request = self._make_request(), None
+            self.request, self._make_request = self._make_request(self._stamp_ns), None
 
     def _next(self, budget: Budget) -> planning.Work[PlanFound] | None:
         """The work on what the external planner or the search has come to; None if there is nothing yet."""
@@ -112,9 +116,9 @@ class PlanSource:
         return None
 
 
-def request_for(context: Context, problem: planning.Problem, number: int, now_ns: int) -> PlanRequest:
+def request_for(context: Context, problem: planning.Problem, number: int, stamp_ns: int) -> PlanRequest:
     """Request to the external planner, with PDDL texts of domain and problem."""
-    return PlanRequest(context.stamp(now_ns), number, context.domain.pddl, planning.format_problem(problem))
+    return PlanRequest(stamp_ns, number, context.domain.pddl, planning.format_problem(problem))
 
 
 def current_problem(context: Context, facts: frozenset[Fact], goal: str) -> planning.Problem:

@@ -205,6 +205,18 @@ def test_after_the_head_start_the_planner_is_asked_and_the_search_goes_on_if_tha
     assert run.state.task.result == "achieved"
 
 
+def test_the_time_limit_of_the_planner_counts_from_its_request_and_not_from_its_head_start():
+    """A planner that was requested later than its limit, e.g. since the robot was held, was killed in the next tick."""
+    begun = round(10 * (LIMIT_S + GRACE_S)) + 5
+    scarce = iter([0] * (begun - 1))
+    run = Run(lambda r: answer_of(r, well), 5, with_head_start(2), lambda: CheckBudget(next(scarce, 200)))
+    run.go(ticks=begun + 60)
+    ((tick, request),) = run.messages(PlanRequest)
+    assert (tick, request.stamp_ns) == (begun, begun * TICK)
+    assert run.messages(PlanReport)[0][1].way == "external"
+    assert run.messages(PlanReport)[0][1].status == "solved"
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_run_with_a_head_start_is_replayed_bit_for_bit(seed):
     rng = np.random.default_rng(seed)
