@@ -27,6 +27,7 @@ class LaunchConfig:
     record: Path | None = None  # MCAP file to write
     once: bool = False  # end when the goal is achieved or has failed
     deployment_file: str = ""  # passed on to the executive
+    planner: str = ""  # command of an external planner that people chose, also passed on: it chooses others by itself
     require_recording: bool = False  # end when the recording ends or lacks something
     scene: bool = False  # publish markers and transforms for viewers in 3D
     hardware: str = ""  # FILE.toml or MODULE:CLASS of a real robot; empty: the simulator
@@ -78,8 +79,7 @@ def executive_process(config: LaunchConfig, senders: Senders) -> ProcessSpec:
     executive = config.executive
     flags = ["--scenario", executive.scenario, "--seed", str(executive.settings.seed), "--connect", config.bus.endpoint]
     flags += ["--horizon", str(executive.settings.refinement.horizon)]
-    external = executive.settings.external
-    flags += ["--planner", "" if external.engine == "auto" and external.after_plans else external.command]
+    flags += ["--planner", config.planner]
     flags += ["--config", config.deployment_file] if config.deployment_file else []
     flags += ["--zoo", executive.zoo] if executive.zoo else []
 

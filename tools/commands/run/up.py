@@ -80,6 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         record=arguments.record,
         once=arguments.once,
         deployment_file=arguments.config,
+        planner=deployment.planner.command,
         require_recording=arguments.require_recording,
         scene=not arguments.no_scene,
         hardware=arguments.hardware,

@@ -1,5 +1,6 @@
 """What the launcher concludes from its children: whose messages count, and what a lost recording means."""
 
+import argparse
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,6 +13,9 @@ from tailor.schemas.messages import ExecStatus, ProcessState, Sample
 from tailor.schemas.own import example
 from tailor.tools.cli.live_status import processes_text
 from tailor.tools.cli.systems.bus_settings import BusSettings
+from tailor.tools.cli.systems.deployment import executive_config
+from tailor.tools.cli.systems.system_flags import deployment_from
+from tailor.tools.commands.run import executive, up
 from tailor.tools.launch import system
 from tailor.tools.launch.process_reports import ProcessReports
 from tailor.tools.launch.processes import (
@@ -24,6 +28,7 @@ from tailor.tools.launch.processes import (
 )
 from tailor.tools.launch.recording_watch import ENDED, RecordingWatch
 from tailor.tools.launch.senders import Senders
+from tailor.tools.main import main
 
 S = 1_000_000_000
 
@@ -90,6 +95,32 @@ def test_only_the_first_start_of_an_executive_has_a_goal():
     assert "--wait" not in executive.command_line(1)
     assert all("--wait" in executive.command_line(start) for start in (2, 3))
     assert executive.restart_note == ", without a goal: arm the robot, then `tailor goal` sends one"
+
+
+def executive_settings(monkeypatch, *flags):
+    """Settings that `tailor up` with these flags has checked, and those that its executive starts with."""
+    configs, parser = [], argparse.ArgumentParser()
+    monkeypatch.setattr(up, "run_system", lambda config, *_: configs.append(config) or "achieved")
+    assert main(["up", "soccer", "--once", *flags]) == 0
+    line = executive_process(configs[0], Senders()).command_line(1)
+    executive.configure(parser)
+    arguments = parser.parse_args(line[line.index("executive") + 1 :])
+    return configs[0].executive, executive_config(arguments.domain, deployment_from(arguments))
+
+
+@pytest.mark.parametrize("table", ["", "after_plans = 5", "limit_s = 3.0", 'engine = "pocl"'])
+@pytest.mark.parametrize(
+    ("named", "flags"), [("", ()), ("cat", ()), ("cat", ("--planner", "")), ("", ("--planner", "cat"))]
+)
+def test_an_executive_starts_with_the_settings_that_its_launcher_has_checked(
+    tmp_path, monkeypatch, capsys, table, named, flags
+):
+    """With planner.after_plans it started without the external planner of the file, and nobody was told."""
+    file = tmp_path / "d.toml"
+    file.write_text(f'[planner]\ncommand = "{named}"\n{table}\n')
+    checked, started = executive_settings(monkeypatch, "--config", str(file), "--seed", "3", "--horizon", "1", *flags)
+    assert started == checked
+    assert started.settings.external.command == (flags[1] if flags else named)
 
 
 def test_hardware_takes_the_simulators_place_and_gets_no_leave():
