@@ -29,7 +29,8 @@ class OnceWatch:
         """Take a state of the own driver."""
         if driver.mode == "armed" and self._armed_start is None:
             self._armed_start = self._starts(self._driver)
-        stopped = driver.mode in ("stopped", "estopped")  # until it is armed again
+        # Until it is armed again. Hardware that was opened at the second attempt is stopped as well: people arm it yet.
+        stopped = driver.mode == "estopped" or (driver.mode == "stopped" and self._armed_start is not None)
         cause = reason_text(driver.reason, driver.detail)
         self._stopped = f"failed: the driver is {driver.mode}: {cause}" if stopped else ""
 

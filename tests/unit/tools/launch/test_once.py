@@ -39,6 +39,23 @@ def test_a_stop_ends_the_run_unless_people_arm_the_robot_again_before_it_was_not
     assert run.watch.failure() == ""
 
 
+def test_hardware_that_is_stopped_before_people_have_armed_it_waits_for_them_as_one_that_is_disarmed():
+    """`open` had failed once, e.g. since the robot was switched on later: the run ended before anybody could arm it."""
+    run = Run("robot.toml")
+    run.hear("stopped", "driver fault")
+    assert run.watch.failure() == ""
+    run.hear("armed")
+    run.hear("stopped", "driver fault")
+    assert run.watch.failure() == "failed: the driver is stopped: driver fault"
+
+
+@pytest.mark.parametrize(("hardware", "mode"), [("robot.toml", "estopped"), ("", "stopped"), ("", "estopped")])
+def test_a_stop_by_people_ends_a_run_that_nobody_has_armed_and_any_stop_one_that_arms_itself(hardware, mode):
+    run = Run(hardware)
+    run.hear(mode, "e-stop")
+    assert run.watch.failure() == f"failed: the driver is {mode}: e-stop"
+
+
 def test_a_fault_of_the_executive_ends_the_run_unless_people_set_another_goal_before_it_was_noticed():
     """It has no result, so the run stood for ever."""
     run, fault = (
