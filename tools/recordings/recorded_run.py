@@ -35,6 +35,7 @@ class RecordedRuns:
         self.path = path
         self.left_out: Counter[str] = Counter()  # messages on exec/tick of no run, by reason
         self._inputs: dict[tuple[str, str, int], Recorded] = {}
+        self._unnumbered: Counter[tuple[str, str]] = Counter()  # messages without a number, by key and sender
         recording = open_recording(path)
         everything = list(_bounded(recording))
         self.damage = recording.damage  # of the file
@@ -42,6 +43,8 @@ class RecordedRuns:
         for message in everything:
             # of equal numbers the first one: an executive refuses the others
             self._inputs.setdefault((message.key, message.sender, message.sequence), message)
+            if message.sequence == 0:
+                self._unnumbered[message.key, message.sender] += 1
             if message.key != ANSWER_KEY:
                 if message.sender in by_sender:
                     self._add(by_sender[message.sender], message)
@@ -108,6 +111,9 @@ class RecordedRuns:
         recorded = self._inputs.get((key, sender, sequence))
         if recorded is None:
             raise UsageError(f"{self.path}: tick {tick} read number {sequence} of {key}, which is not recorded")
+        if sequence == 0 and (count := self._unnumbered[key, sender]) > 1:
+            problem = f"tick {tick} read one of {count} messages of {key} without numbers"
+            raise UsageError(f"{self.path}: {problem}, expected numbers, as nothing else tells which")
         message = decoded(recorded)
         return Sample(key, message, arrival_ns, sequence, sender)
 
