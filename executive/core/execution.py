@@ -28,6 +28,8 @@ class Running:
     started_ns: int
     controller_state: Any = None
     interval_s: tuple[float, float] | None = None  # that the duration lies in with 90 %; None: the model has none
+    first_s: float | None = None  # predicted at its start, if it was redirected since
+    longest_s: float = 0.0  # of what was predicted to be left when it was redirected
     unsupported: int = 0  # ticks in a row for which a fact has been missing that the plan needs
     is_lost: bool = False  # whether one has been missing for so long that another plan is searched for
     lost: Cause | None = None  # the last such fact
@@ -37,9 +39,13 @@ class Running:
         return (now_ns - self.started_ns) / 1e9
 
     def time_limit_s(self) -> float:
-        """Seconds until the action fails: predicted duration times the action's factor, but at least its floor."""
-        predicted = self.predicted_s if np.isfinite(self.predicted_s) else 0.0
-        return max(self.action.time_limit_floor_s, self.action.time_limit_factor * predicted)
+        """Seconds until the action fails: predicted duration times the action's factor, but at least its floor.
+
+        A robot that is stuck is redirected again and again if what it drives to moves: each time is not another limit.
+        """
+        most_s = np.inf if self.first_s is None else self.first_s + self.longest_s
+        predicted_s = min(self.predicted_s, most_s) if np.isfinite(self.predicted_s) else 0.0
+        return max(self.action.time_limit_floor_s, self.action.time_limit_factor * predicted_s)
 
     def surprise(self, now_ns: int) -> str:
         """Text if the action, which ends now, took less or more than its interval; empty otherwise."""
@@ -59,6 +65,8 @@ class Running:
             started_ns=self.started_ns,
             predicted_s=elapsed_s + following.predicted_s,
             interval_s=interval_s and (elapsed_s + interval_s[0], elapsed_s + interval_s[1]),
+            first_s=self.predicted_s if self.first_s is None else self.first_s,
+            longest_s=max(self.longest_s, following.predicted_s if np.isfinite(following.predicted_s) else 0.0),
         )
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import checked
+from tailor.executive.core.execution import Running
 from tailor.executive.core.modes import Conditions, Mode, next_mode
 from tailor.executive.core.state import Inputs, initial_state
 from tailor.executive.core.step import step
@@ -30,7 +31,7 @@ from tailor.schemas.messages import (
     VelocityCommand,
 )
 from tailor.schemas.topics import TOPICS
-from tests.support.toy_domain import CLOSED, CREEP_MPS, SENDER, driver, inputs, line_context, odometry
+from tests.support.toy_domain import CLOSED, CREEP_MPS, SENDER, SLIDE, driver, inputs, line_context, odometry
 
 TICK = 100_000_000
 GOAL = "(and (visited a) (visited b) (at b))"
@@ -157,6 +158,32 @@ def test_action_that_never_ends_fails_at_its_time_limit():
     failed = next(n for n, (state, _, _) in enumerate(run) if state.task.finished == 1)
     assert [run[n][0].command[0] for n in (failed - 1, failed)] == [0.5, 0.0]
     assert (finished[0].reason, finished[0].detail) == (Reason.ACTION_TIMEOUT, "10.0 s")
+
+
+@pytest.mark.promise("P30")
+@pytest.mark.parametrize("every", [10, 50, 90])
+def test_a_robot_that_is_stuck_fails_as_well_if_the_place_that_it_drives_to_moves_again_and_again(every):
+    """Each time it was given three times as long as until then: it pushed on for ever."""
+
+    def stuck(n, given, x):
+        return Inputs((odometry(n * TICK, 0.0, n, 0.3 * (n // every % 2)), driver(n * TICK)), given.goal)
+
+    run = list(drive(line_context(), goal="(visited a)", world=stuck, ticks=400))
+    finished = messages(run, ActionFinished)
+    assert [(f.outcome, f.reason) for f in finished] == [("failed", Reason.ACTION_TIMEOUT)] * 2
+    assert max(f.actual_s for f in finished) <= 10.1
+    assert run[-1][0].mode is Mode.FAULT
+
+
+def test_a_redirected_action_has_the_time_of_the_longest_way_that_was_left():
+    running = Running(SLIDE, 1, False, (), 6.0, 0)
+    assert running.time_limit_s() == 18.0
+    at_s = [(2, 5.0), (10, 9.0), (30, 8.0), (50, float("inf")), (60, 1.0)]
+    limits = []
+    for now_s, left_s in at_s:
+        running = running.redirected(dataclasses.replace(running, predicted_s=left_s), round(now_s * 1e9))
+        limits.append(running.time_limit_s())
+    assert limits == [3 * (2 + 5), 3 * (6 + 9), 3 * (6 + 9), 10.0, 3 * (6 + 9)]
 
 
 @pytest.mark.promise("P28")
