@@ -46,7 +46,7 @@ def receive_answers(context: Context, state: State, inputs: Inputs) -> None:
 
 def advance_deliberation(context: Context, state: State, budget: Budget) -> State:
     """Start, resume or adopt the result of the deliberation; changes `state.deliberation` in place."""
-    if state.mode is not Mode.EXECUTING:
+    if state.mode is not Mode.EXECUTING or state.fault is not None:  # one of this tick, whose mode follows in the next
         return state
     state = _with_deliberation(context, state)
     deliberation = state.deliberation

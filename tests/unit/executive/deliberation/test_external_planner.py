@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tailor.executive.core.deliberation_cycle import pending_request
+from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import PlannerCommand, Settings
@@ -16,7 +17,7 @@ from tailor.executive.interfaces.budget import CheckBudget
 from tailor.executive.interfaces.reasons import Reason
 from tailor.executive.planning import format_links, format_plan, parse_domain, parse_plan, parse_problem, validate
 from tailor.executive.replay import RecordedTick, replay
-from tailor.schemas.messages import PlanAnswer, PlanReport, PlanRequest, Sample
+from tailor.schemas.messages import ActionFinished, PlanAnswer, PlanReport, PlanRequest, Sample
 from tests.replay.test_replay_core import FickleBudget
 from tests.support.planning.planning_problems import solve
 from tests.support.toy_domain import SENDER, inputs, line_context
@@ -139,6 +140,15 @@ def test_after_a_failure_it_gets_a_request_only_for_a_new_goal():
     assert len(run.messages(PlanRequest)) == 1
     run.go(ticks=5, goals=[(21, "(visited b)")])
     assert [tick for tick, _ in run.messages(PlanRequest)] == [1, 21]
+
+
+def test_a_fault_starts_no_planner():
+    """In the tick of the fault another request was made; the planner ran while nobody waited for its plan."""
+    places = {"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}}  # a is too far: the action fails, twice
+    run = Run(lambda r: answer_of(r, well), 1, line_context(WITH_PLANNER, places)).go(20, [(1, "(visited a)")])
+    assert run.state.mode is Mode.FAULT
+    assert len(run.messages(PlanRequest)) == len(run.messages(ActionFinished)) == 2
+    assert pending_request(run.state) is None
 
 
 def test_an_answer_that_never_comes_does_not_hold_the_robot_for_ever():
