@@ -59,6 +59,8 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     if deliberation.stage == "failed":
         return _with_failure(context, state, deliberation.failure)
     if deliberation.nothing_to_do():
+        if not _holds_still(context, state, deliberation):
+            return replace(state, deliberation=None)
         finished = state.task.finished + (state.task.running is not None)
         task = replace(state.task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
         return replace(state, task=task)
@@ -69,6 +71,12 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
         state = with_budget_used(context, with_next_choice(context, state, deliberation), budget)
         deliberation.certify(budget)  # what is left of the budget
     return state
+
+
+def _holds_still(context: Context, state: State, deliberation: Deliberation) -> bool:
+    """Whether the facts of now give what a plan without steps takes from those of its start, perhaps seconds ago."""
+    plan, facts = deliberation.plan, anchored(context.domain, state.belief, context.scenario, state.task.facts)
+    return plan is None or all(link.literal.holds_in(facts) for link in plan.links)
 
 
 def _with_deliberation(context: Context, state: State) -> State:

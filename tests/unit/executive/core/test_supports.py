@@ -86,7 +86,7 @@ def context_of(domain):
     return make_context(domain, scenario, Models({"slide/duration": LineModel()}, {}), Settings(), SENDER)
 
 
-def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick: 2000, slow=()):
+def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick: 2000, slow=(), goal=""):
     """The states and messages of ticks; `lost` tells at which ticks the fact is not observed.
 
     `moved` tells how far the places are from where they were, `checks` how many are granted, `slow` when every other
@@ -98,7 +98,7 @@ def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick:
         number += 2 if tick in slow else 5
         seen = odometry(tick * TICK, x, tick, moved(tick))
         seen = replace(seen, sequence=number, message=replace(seen.message, phi=float(lost(tick))))
-        given = Inputs((seen, driver(tick * TICK)), context.problem.goal_text if tick == 1 else "")
+        given = Inputs((seen, driver(tick * TICK)), (goal or context.problem.goal_text) if tick == 1 else "")
         state, outputs = step(context, state, tick * TICK, given, CheckBudget(checks(tick)))
         found.append((state, [output.message for output in outputs]))
         x += 0.1 * state.command[0]
@@ -267,6 +267,13 @@ def test_a_plan_that_must_not_begin_yet_as_a_sensor_is_slow_begins_at_rest_once_
     assert ends(found)[0] == (16, "aborted", Reason.SUPPORT_LOST, "(road a b)")
     assert not any(commands(found)[17 : slow.stop + 1])
     assert found[-1][0].task.result == "achieved"
+
+
+def test_a_goal_that_held_when_its_search_began_is_not_achieved_where_it_holds_no_more_at_the_end():
+    """An external planner takes seconds to find that there is nothing to do."""
+    starved = {"checks": lambda tick: 0 if tick < 20 else 2000, "goal": "(and (place b) (at home))"}
+    assert run(lambda tick: tick >= 3, **starved)[-1][0].task.result_cause.reason is Reason.UNSOLVABLE
+    assert run(lambda tick: 3 <= tick < 19, **starved)[-1][0].task.result == "achieved"
 
 
 @settings(max_examples=40, deadline=None)
