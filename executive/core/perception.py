@@ -24,6 +24,8 @@ from tailor.schemas.messages import DriverState, Sample
 from tailor.schemas.reason_text import reason_text
 from tailor.schemas.topics import key_of
 
+STOOD_NS = 1_000_000_000  # without a tick, and so without a command: guards have stopped a robot long before
+
 
 def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> State:
     """The state with this tick's inputs and the mode that follows from them."""
@@ -32,6 +34,8 @@ def perceive(context: Context, state: State, now_ns: int, inputs: Inputs) -> Sta
     passed_ns, second_ago = now_ns - state.now_ns, now_ns - 1_000_000_000
     overruns = (*(t for t in state.overruns_ns if t > second_ago), *((now_ns,) * bool(inputs.skipped)))
     arming = _driver_of(context, state.arming, now_ns, inputs)
+    if passed_ns >= STOOD_NS and _was_armed(state.arming):  # without an echo nothing else tells
+        arming = replace(arming, rearmed=True)
     state = replace(state, tick=state.tick + 1, now_ns=now_ns, overruns_ns=overruns, arming=arming)
     state = _with_readings(context, state, inputs.samples)
     if unsent and not _stale(context, state):  # arming moves nothing: also no gripper that people have opened by hand
@@ -98,6 +102,10 @@ def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) ->
                     rearmed=arming.rearmed or _rearmed(arming.driver, sample.message),
                 )
     return arming
+
+
+def _was_armed(arming: Arming) -> bool:
+    return arming.driver is not None and arming.driver.mode == "armed"
 
 
 def _rearmed(known: DriverState | None, now: DriverState) -> bool:

@@ -420,6 +420,22 @@ def test_nothing_outlasts_a_stop_that_came_and_went_while_the_executive_stood_st
 
 
 @pytest.mark.promise("P6")
+@pytest.mark.parametrize(("stood", "goes_on"), [(9, True), (10, False), (30, False)])
+def test_nothing_outlasts_a_second_without_a_command_whether_or_not_the_driver_echoes_any(stood, goes_on):
+    """Its guard has stopped the robot, which people may have carried, and have armed again since."""
+    context, x = line_context(), 0.0
+    state = initial_state(context)
+    for n in (*range(1, 6), *range(5 + stood, 10 + stood)):
+        state, outputs = step(context, state, n * TICK, inputs(n * TICK, x, GOAL if n == 1 else ""), CheckBudget(200))
+        x += 0.1 * state.command[0]
+        if n == 5 + stood:
+            assert (state.task.running is not None) is goes_on
+            assert any(isinstance(output.message, VelocityCommand) for output in outputs) is goes_on
+    assert state.task.running is not None
+    assert state.task.finished == (not goes_on)
+
+
+@pytest.mark.promise("P6")
 def test_a_decision_that_no_action_has_begun_yet_does_not_outlast_a_stop():
     """A person carries the robot meanwhile: what was decided for the old place is not driven from the new one."""
     first = next(n for n, (state, _, _) in enumerate(drive(line_context())) if state.task.decision is not None) + 1
