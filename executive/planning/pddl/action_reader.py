@@ -19,6 +19,7 @@ from tailor.executive.planning.pddl.language import (
     Effect,
     Numeric,
     Typed,
+    When,
 )
 from tailor.executive.planning.pddl.numeric_reader import read_cost, read_duration
 from tailor.executive.planning.pddl.substitution import substituted
@@ -101,7 +102,12 @@ def _effects(node: Node, scope: Scope, durative: bool) -> tuple[Effect, ...]:
     moment = moment_of(form)
     if moment == "over":
         raise form.place.unsupported("an effect over all")
-    return tuple(replace(effect, when=moment) for effect in _effects(form.items[2], scope, False))
+    return tuple(_at(moment, effect) for effect in _effects(form.items[2], scope, False))
+
+
+def _at(moment: When, effect: Effect) -> Effect:
+    """An effect inside (at start ..) or (at end ..): it happens at that moment, and depends on what holds then."""
+    return replace(effect, when=moment, condition=tuple(replace(part, when=moment) for part in effect.condition))
 
 
 def _forall(form: Form, scope: Scope, durative: bool) -> tuple[Effect, ...]:

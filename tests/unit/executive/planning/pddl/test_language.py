@@ -211,6 +211,30 @@ def test_a_conditional_effect_at_the_end_may_depend_on_the_start(planned):
     assert planned(domain, problem.replace("{}", "(ash)"))[0] == ["light", "fire"]
 
 
+@pytest.mark.parametrize(
+    "effect",
+    [
+        "(at end (when (open ?d) (aired ?d)))",
+        "(at end (forall (?d) (when (open ?d) (aired ?d))))",
+        "(forall (?d) (when (at end (open ?d)) (at end (aired ?d))))",
+        "(when (at start (calm)) (at end (and (when (open ?d) (aired ?d)))))",
+    ],
+)
+def test_a_condition_inside_an_effect_at_the_end_is_one_at_the_end(effect, planned):
+    domain = f"""
+    (define (domain house) (:requirements :adl :durative-actions) (:predicates (calm) (on) (open ?d) (aired ?d))
+      (:durative-action blow :parameters (?d) :duration (= ?duration 9) :effect (and (at start (on)) {effect}))
+      (:durative-action unlatch :parameters (?d) :duration (= ?duration 1) :condition (at start (on))
+        :effect (at end (open ?d)))
+      (:durative-action latch :parameters (?d) :duration (= ?duration 1) :condition (at start (on))
+        :effect (at end (not (open ?d)))))"""
+    problem = "(define (problem p) (:domain house) (:objects door) (:init (calm) {}) (:goal (and (aired door) {})))"
+    assert planned(domain, problem.format("", ""))[0] == ["blow door", "unlatch door"]
+    _, plan = planned(domain, problem.format("(open door)", "(not (open door))"))
+    blow, latch = plan.steps
+    assert blow.start + blow.duration < latch.start + latch.duration
+
+
 def test_a_deletion_lasts_only_where_the_addition_fails_at_one_of_its_moments(options):
     # `wash` leaves the pot dirty when it was greased at the start and is dry at the end; only `wash` lets `wipe` begin
     domain = """
