@@ -10,6 +10,7 @@ from tailor.executive.planning.ground.ground_formula import Binding, StaticWorld
 from tailor.executive.planning.pddl.language import And, Atom, Equal, Formula, Not, Or, Quantified, Typed
 
 Terms = Mapping[str, Sequence[str]]  # the objects that a variable may stand for
+Choices = Sequence[Sequence[str]]  # the objects that each term of an atom may stand for
 Changed = Mapping[str, AbstractSet[Fact]]  # by predicate
 
 
@@ -32,28 +33,34 @@ def chosen(variables: Iterable[Typed], terms: Terms, world: StaticWorld) -> Term
     return {**terms, **choices} if all(choices.values()) else None
 
 
-def mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
-    """The changed facts that a formula mentions, for all objects of its variables."""
+def atoms_of(formula: Formula, terms: Terms, world: StaticWorld) -> Iterator[tuple[Atom, Choices]]:
+    """The atoms of a formula, each with the objects that its terms may stand for."""
     match formula:
-        case Atom(predicate, names):
-            facts, choices = changed.get(predicate, frozenset()), [terms.get(name, (name,)) for name in names]
-            if all(len(objects) == 1 for objects in choices):  # most atoms: no need to look at every fact
-                yield from facts & {(predicate, *(name for (name,) in choices))}
-            else:
-                yield from (fact for fact in facts if _fits(names, fact[1:], choices))
+        case Atom(_, names):
+            yield formula, [terms.get(name, (name,)) for name in names]
         case Not(part):
-            yield from mentioned(part, terms, changed, world)
+            yield from atoms_of(part, terms, world)
         case And(parts) | Or(parts):
             for part in parts:
-                yield from mentioned(part, terms, changed, world)
+                yield from atoms_of(part, terms, world)
         case Quantified(_, variables, part):
             if (inner := chosen(variables, terms, world)) is not None:
-                yield from mentioned(part, inner, changed, world)
+                yield from atoms_of(part, inner, world)
         case Equal():
             pass
 
 
-def _fits(names: Sequence[str], objects: Sequence[str], choices: Sequence[Sequence[str]]) -> bool:
+def mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:
+    """The changed facts that a formula mentions, for all objects of its variables."""
+    for atom, choices in atoms_of(formula, terms, world):
+        facts = changed.get(atom.predicate, frozenset())
+        if all(len(objects) == 1 for objects in choices):  # most atoms: no need to look at every fact
+            yield from facts & {(atom.predicate, *(name for (name,) in choices))}
+        else:
+            yield from (fact for fact in facts if _fits(atom.terms, fact[1:], choices))
+
+
+def _fits(names: Sequence[str], objects: Sequence[str], choices: Choices) -> bool:
     """Whether names can stand for these objects, of those that each may choose from, and each for one only."""
     own_of = dict(zip(names, objects, strict=True))
     return all(

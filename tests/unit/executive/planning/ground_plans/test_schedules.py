@@ -172,3 +172,63 @@ def test_effects_that_happen_whatever_the_order_are_kept_apart_in_the_best_sched
     while not search.ended:
         search.advance(CheckBudget(100))
     assert (search.ended, search.value) == ("proven", 4)
+
+
+# a sets w unless z is false, which b reads when both end: at 4, if c makes z false, which no condition requires
+UNASKED = """(define (domain d) (:requirements :durative-actions :timed-initial-literals :conditional-effects)
+  (:constants o) (:predicates (z ?o) (w) (v) (begun) (done-a) (done-b) (open-a) (open-b))
+  (:durative-action a :parameters () :duration (= ?duration 2) :condition (at start (and (begun) (open-a)))
+    :effect (and (at end (done-a)) (when (at start {condition}) (at end (w)))))
+  (:durative-action b :parameters () :duration (= ?duration 3) :condition (at start (open-b))
+    :effect (and (at start (begun)) (at end (done-b)) (when (at end (w)) (at end (v)))))
+  (:action c :parameters ({parameters}) :effect {effect}))"""
+WITH_C = "1: (b) [3]\n1: (c{}) [0]\n2: (a) [2]"
+ENDED = [
+    ("(z o)", "", "(not (z o))"),
+    ("(not (z o))", "", "(z o)"),
+    ("(forall (?o) (z ?o))", "", "(not (z o))"),
+    ("(or (z o) (w))", "?x", "(forall (?y) (when (= ?x ?y) (not (z ?x))))"),
+]
+
+
+def unasked(condition, parameters, effect, timed=""):
+    holding = "" if condition.startswith("(not") else "(z o)"
+    domain, problem = read(
+        UNASKED.format(condition=condition, parameters=parameters, effect=effect),
+        f"(define (problem x) (:domain d) (:init {holding} (open-a) (open-b) {timed}) (:goal (and (done-a) (done-b))))",
+    )
+    plan = parse_plan(WITH_C.format(" o" if parameters else ""))
+    assert (plan.makespan, validate(plan, domain, problem)) == (4, "")
+    return domain, problem
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("ended", ENDED)
+def test_a_step_that_no_condition_requires_may_let_events_coincide(ended, ground):
+    search = AnytimeSearch(*unasked(*ended), Settings(tolerance_s=1, ground=ground))
+    while not search.ended:
+        search.advance(CheckBudget(100))
+    assert search.value == 4 or "may have a shorter schedule" in search.ended
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("ended", ENDED)
+def test_a_plan_without_a_schedule_is_no_dead_end_if_another_step_gives_it_one(ended, ground):
+    times = "(at 2 (not (open-b))) (at 3 (not (open-a)))"  # b at 1, a at 2
+    result = solve(*unasked(*ended, timed=times), Settings(tolerance_s=1, ground=ground))
+    assert (result.status, "gave up to look for a schedule" in result.reason) == ("limit", True)
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize("effect", ["(z o)", "(not (z ?x))"])
+def test_a_schedule_is_the_shortest_if_no_step_can_end_what_keeps_events_apart(effect, ground):
+    domain, problem = read(
+        UNASKED.format(condition="(z o)", parameters="?x - none", effect=effect).replace(
+            "(:constants", "(:types none) (:constants"
+        ),
+        "(define (problem x) (:domain d) (:init (z o) (open-a) (open-b)) (:goal (and (done-a) (done-b))))",
+    )
+    search = AnytimeSearch(domain, problem, Settings(tolerance_s=1, ground=ground))
+    while not search.ended:
+        search.advance(CheckBudget(100))
+    assert (search.ended, search.value) == ("proven", 5)
