@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
-from tailor.executive.planning.pddl.times import NANOSECOND_S
+from tailor.executive.planning.pddl.times import NANOSECOND_S, exact
 from tailor.executive.planning.plans.plan import DEFAULT_TICK_S, GOAL, Link, Plan, Step
 from tailor.executive.planning.plans.schedule import levels
 from tailor.schemas.errors import UsageError
@@ -15,7 +15,9 @@ from tailor.schemas.errors import UsageError
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
 MAX_STEPS = 200  # as many as our own plans may have
-MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
+MAX_DIGITS = 24  # of a whole number; bounds of the longest plan in nanoseconds have 21
+MAX_TIME_S = 1e12  # 200 steps of the longest duration take 2e11
+MAX_DECIMALS = 12  # that a tick is taken from
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
 _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
@@ -147,7 +149,7 @@ def _whole(text: str) -> int:
 
 def _number(text: str) -> float:
     _check_length(text)
-    if not _DECIMAL.fullmatch(text) or not 0 <= float(text) < 10**MAX_DIGITS:
+    if not _DECIMAL.fullmatch(text) or not 0 <= float(text) < MAX_TIME_S:
         raise ValueError(f"expected a time, found '{text[:60]}'")
     return float(text)
 
@@ -187,7 +189,7 @@ def _from_plain(draft: _Draft) -> Plan:
     if len(draft.instant) == len(ordered):
         return Plan(draft.problem, (), tuple(ordered))
     steps = tuple(replace(step, duration=0.0) if step.id in draft.instant else step for step in ordered)
-    tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS))
+    tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DECIMALS))
     return Plan(draft.problem, (), steps, durative=True, tick_s=tick_s)
 
 
@@ -212,13 +214,13 @@ def _from_links(draft: _Draft) -> Plan:
 
 
 def _durative(draft: _Draft) -> Plan:
-    tick_s = draft.tick_s
+    tick_s = exact(draft.tick_s)
     steps = []
     for number, action in draft.actions.items():
         start, end = draft.bounds[2 * number - 1][0], draft.bounds[2 * number][0]
         if start is None or end is None:
             raise PlanTextError(f"plan text: step {number} has no earliest time")
-        steps.append(Step(number, action, round(-start * tick_s, 9), round((start - end) * tick_s, 9)))
+        steps.append(Step(number, action, float(-start * tick_s), float((start - end) * tick_s)))
     numbers = sorted(draft.actions)
     pairs = []
     for i in numbers:

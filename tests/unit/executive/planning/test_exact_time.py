@@ -94,6 +94,19 @@ def test_long_durations_beside_short_ones_are_exact():
     assert math.isclose(plan.makespan, 900000000.01, abs_tol=0.02)
 
 
+@pytest.mark.parametrize("duration", ["(/ 10000 3)", "(/ 999999999 7)", "(* 1e9 0.999999999)"])
+def test_a_long_plan_in_nanoseconds_is_read_back(duration):
+    domain, problem = read(
+        f"""(define (domain d) (:requirements :durative-actions) (:predicates (p) (q))
+          (:durative-action one :parameters () :duration (= ?duration {duration}) :effect (at end (p)))
+          (:durative-action two :parameters () :duration (= ?duration (/ 1 3)) :condition (at start (p))
+            :effect (at end (q))))""",
+        "(define (problem x) (:domain d) (:init) (:goal (q)))",
+    )
+    plan = solve(domain, problem).plan
+    assert parse_plan(format_links(plan)) == plan
+
+
 # --- the validator works durations out by itself; it agrees with the search, which it does not share ---
 VALUES = {("distance", "a", "b"): 4.0, ("speed",): 0.5, ("zero",): 0.0}
 BINDING = {"?from": "a", "?to": "b"}
