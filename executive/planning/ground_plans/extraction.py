@@ -43,7 +43,7 @@ class Frame:
         """The pairs (i, j) of steps where i must end before j starts."""
         nodes = [(step, self.task.node_of(step)) for step in range(1, len(self.names) + 1)]
         for i, first in nodes:
-            after = self.orderings.late[first + self.task.moments - 1]
+            after = self.orderings.not_before(first + self.task.moments - 1)
             yield from ((i, j) for j, node in nodes if i != j and after >> node & 1)
 
     def bounds(self) -> tuple[tuple[int | None, ...], ...]:

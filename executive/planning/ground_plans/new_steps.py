@@ -57,7 +57,7 @@ def new_step_plans(task: GroundTask, plan: PartialPlan, flaw: OpenCondition, lit
         orderings, link, threats, count = insertion
         if by_literal is not None:
             guarded = by_literal.undone_by(action)
-        threats, count = threats_by(action, node, orderings.late, guarded, threats, count)
+        threats, count = threats_by(action, node, orderings, guarded, threats, count)
         conditions = action.conditions + effect.conditions if effect.conditions else action.conditions
         children.append(
             new(

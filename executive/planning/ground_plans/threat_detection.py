@@ -10,7 +10,7 @@ from tailor.executive.planning.ground.ground_formula import GroundCondition
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import Link, Threat, new
 from tailor.executive.planning.structures.linked_list import cells_of
-from tailor.executive.planning.structures.orderings import Orderings
+from tailor.executive.planning.structures.orderings import Orderings, nodes_after
 
 Spanned = tuple[tuple[GroundCondition, Span], ...]
 Threats = tuple[Threat | None, int]  # the list and its length
@@ -53,7 +53,7 @@ def threats_to(
         return threats, count
     producer, literal, first, last, _ = link
     late = orderings.late
-    mask = undoing & ~late[last] & ~(1 << producer)
+    mask = undoing & ~nodes_after(orderings, first, last) & ~(1 << producer)
     if first == last:
         mask &= ~(1 << first)  # the consumer may undo its own condition, except a condition over all at its start
     while mask:
@@ -73,12 +73,12 @@ def _deletions_at(task: GroundTask, steps: tuple[GroundAction, ...], node: int, 
 
 
 def threats_by(
-    action: GroundAction, node: int, late: tuple[int, ...], guarded: Guarded, threats: Threat | None, count: int
+    action: GroundAction, node: int, orderings: Orderings, guarded: Guarded, threats: Threat | None, count: int
 ) -> Threats:
     """Adds the threats by a new step to older links, newest link first."""
-    bits = action.bits
+    bits, late = action.bits, orderings.late
     for undoing, link in [pair for pair in guarded if pair[0] in bits]:
-        mask = bits[undoing] << node & ~late[link.last]
+        mask = bits[undoing] << node & ~nodes_after(orderings, link.first, link.last)
         while mask:
             at = mask.bit_length() - 1
             mask ^= 1 << at

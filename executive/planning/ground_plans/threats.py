@@ -7,18 +7,19 @@ from tailor.executive.planning.ground.ground_formula import negation
 from tailor.executive.planning.ground.ground_task import GroundTask
 from tailor.executive.planning.ground_plans.partial_plan import OpenCondition, PartialPlan, Threat, new
 from tailor.executive.planning.structures.linked_list import without
+from tailor.executive.planning.structures.orderings import nodes_after
 
 
 def is_threat(plan: PartialPlan, threat: Threat) -> bool:
     """Whether the node may still come between the link's producer and its consumer."""
     late, link, node = plan.orderings.late, threat.link, threat.node
-    return not (late[link.last] >> node & 1 or late[node] >> link.producer & 1)
+    return not (nodes_after(plan.orderings, link.first, link.last) >> node & 1 or late[node] >> link.producer & 1)
 
 
 def count_refinements(plan: PartialPlan, threat: Threat) -> int:
     """Number of refinements of a threat; 0 if it no longer threatens, so that it is dropped first."""
     late, (link, node, conditions, _) = plan.orderings.late, threat
-    if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
+    if nodes_after(plan.orderings, link.first, link.last) >> node & 1 or late[node] >> link.producer & 1:
         return 0
     promotion = not late[node] >> link.last & 1
     demotion = not late[link.producer] >> node & 1

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from tailor.executive.planning.lifted.lifted_plan import LiftedLink, LiftedPlan, LiftedThreat, opposing
 from tailor.executive.planning.lifted.task import LiftedTask, PlacedEffect
+from tailor.executive.planning.structures.orderings import nodes_after
 
 
 def threatened_by_step(
@@ -35,7 +36,7 @@ def is_threat(task: LiftedTask, plan: LiftedPlan, threat: LiftedThreat) -> bool:
     late, link, node = plan.orderings.late, threat.link, threat.node
     if node in (link.producer, link.last):
         return False  # the consumer may undo its own condition, except a condition over all at its start
-    if late[link.last] >> node & 1 or late[node] >> link.producer & 1:
+    if nodes_after(plan.orderings, link.first, link.last) >> node & 1 or late[node] >> link.producer & 1:
         return False
     if not opposing(link.literal, threat.effect, plan.bindings):
         return False

@@ -60,9 +60,22 @@ class Orderings(Protocol):
         """The orderings with node a before node b; None if that is inconsistent."""
         ...
 
+    def not_before(self, node: int) -> int:
+        """The mask of the nodes that cannot come before a node at all; those of `late` cannot by a tick or more."""
+        ...
+
     def earliest(self) -> tuple[float, ...]:
         """The earliest time of each node, the goal's is the makespan: levels without durations, else ticks."""
         ...
+
+
+def nodes_after(orderings: Orderings, first: int, last: int) -> int:
+    """The mask of the nodes that cannot come before the end of a condition, which holds from `first` to `last`.
+
+    Of a condition at one node those that cannot come a tick before: its schedule keeps the others a tick apart. A
+    condition over all is to hold up to the very end.
+    """
+    return orderings.late[last] if first == last else orderings.not_before(last)
 
 
 class Closure(NamedTuple):
@@ -91,6 +104,10 @@ class Closure(NamedTuple):
         if late[a] >> b & 1:
             return self
         return tuple.__new__(Closure, (tuple([mask | after if mask & bit else mask for mask in late]),))
+
+    def not_before(self, node: int) -> int:
+        """See `Orderings`."""
+        return self.late[node]
 
     def earliest(self) -> tuple[float, ...]:
         """See `Orderings`: the longest chain of steps that ends in each node."""

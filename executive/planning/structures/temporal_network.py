@@ -86,6 +86,10 @@ class TemporalNetwork(NamedTuple):
                 late[node] = _late(changed, node, tick)
         return TemporalNetwork(tuple(rows), tuple(late), tick, self.first)
 
+    def not_before(self, node: int) -> int:
+        """See `Orderings`; a tick may be several units."""
+        return self.late[node] if self.tick == 1 else _late(self.rows[node], node, 1)
+
     def earliest(self) -> tuple[float, ...]:
         """Earliest times in units; the goal's is the makespan: the last end of a step, whatever happens by itself."""
         times = [-bound for bound in self.rows[INITIAL]]

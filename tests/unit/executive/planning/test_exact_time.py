@@ -94,6 +94,38 @@ def test_long_durations_beside_short_ones_are_exact():
     assert math.isclose(plan.makespan, 900000000.01, abs_tol=0.02)
 
 
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+@pytest.mark.parametrize(("longer", "shorter", "tick_s"), [("10.005", "9.99", 0.01), ("3", "1.5", 1), ("3", "2", 1)])
+def test_a_condition_over_all_is_kept_up_to_the_last_part_of_a_tick(longer, shorter, tick_s, ground):
+    """The shorter action cannot end a whole tick before the longer one, which it would disturb, but a part of it."""
+    domain, problem = read(
+        f"""(define (domain d) (:requirements :durative-actions) (:predicates (shut) (begun) (baked) (aired))
+          (:durative-action bake :parameters () :duration (= ?duration {longer}) :condition (over all (shut))
+            :effect (and (at start (begun)) (at end (baked))))
+          (:durative-action air :parameters () :duration (= ?duration {shorter}) :condition (at start (begun))
+            :effect (and (at end (not (shut))) (at end (aired)))))""",
+        "(define (problem x) (:domain d) (:init (shut)) (:goal (and (baked) (aired))))",
+    )
+    plan = solve(domain, problem, Settings(tolerance_s=tick_s, ground=ground)).plan
+    assert validate(plan, domain, problem) == ""
+
+
+@pytest.mark.parametrize("ground", [True, False], ids=["ground", "lifted"])
+def test_a_step_that_starts_in_the_last_part_of_another_ones_last_tick_is_not_ordered_after_it(ground):
+    domain, problem = read(
+        """(define (domain d) (:requirements :durative-actions) (:predicates (begun) (g) (h))
+          (:durative-action one :parameters () :duration (= ?duration 1.5)
+            :effect (and (at start (begun)) (at end (g))))
+          (:durative-action two :parameters () :duration (= ?duration 1.5) :condition (at start (begun))
+            :effect (at end (h))))""",
+        "(define (problem x) (:domain d) (:init) (:goal (and (g) (h))))",
+    )
+    plan = solve(domain, problem, Settings(tolerance_s=1, ground=ground)).plan
+    assert [(step.action, step.start) for step in plan.steps] == [(("one",), 1), (("two",), 2)]
+    assert plan.orderings == ()
+    assert parse_plan(format_links(plan)).orderings == ()
+
+
 @pytest.mark.parametrize("duration", ["(/ 10000 3)", "(/ 999999999 7)", "(* 1e9 0.999999999)"])
 def test_a_long_plan_in_nanoseconds_is_read_back(duration):
     domain, problem = read(
