@@ -41,13 +41,35 @@ def atoms_of(formula: Formula, terms: Terms, world: StaticWorld) -> Iterator[tup
         case Not(part):
             yield from atoms_of(part, terms, world)
         case And(parts) | Or(parts):
-            for part in parts:
-                yield from atoms_of(part, terms, world)
+            if (possible := _undecided(formula, terms)) is not None:
+                for part in parts:
+                    yield from atoms_of(part, possible, world)
         case Quantified(_, variables, part):
             if (inner := chosen(variables, terms, world)) is not None:
                 yield from atoms_of(part, inner, world)
         case Equal():
             pass
+
+
+def _undecided(formula: And | Or, terms: Terms) -> Terms | None:
+    """The terms without objects for which an equality among its parts decides a formula; None if it always does.
+
+    So does one of a conjunction that fails, and one of a disjunction that holds: no fact is read then.
+    """
+    for part in formula.parts:
+        equality = part.part if isinstance(part, Not) else part
+        if not isinstance(equality, Equal):
+            continue
+        left, right = (terms.get(side, (side,)) for side in (equality.left, equality.right))
+        common = [name for name in left if name in right] if len(left) == 1 or len(right) == 1 else list(left)
+        if isinstance(formula, And) == (equality is part):  # a conjunction with it, or a disjunction with its negation
+            if not common:
+                return None
+            if len(common) == 1:
+                terms = {**terms, equality.left: common, equality.right: common}
+        elif len(left) == len(right) == len(common) == 1:
+            return None
+    return terms
 
 
 def mentioned(formula: Formula, terms: Terms, changed: Changed, world: StaticWorld) -> Iterator[Fact]:

@@ -62,10 +62,43 @@ def _reads(formula: Formula, terms: Terms, facts: frozenset[Fact], objects: Obje
         case Not(part):
             return _reads(part, terms, facts, objects)
         case And(parts) | Or(parts):
-            return any(_reads(part, terms, facts, objects) for part in parts)
+            possible = _undecided(formula, terms, objects)
+            return possible is not None and any(_reads(part, possible, facts, objects) for part in parts)
         case Quantified(_, variables, part):
             inner = {**terms, **{v.name: v for v in variables}}
             return all(objects.of(v) for v in variables) and _reads(part, inner, facts, objects)
+
+
+def _undecided(formula: And | Or, terms: Terms, objects: Objects) -> Terms | None:
+    """The terms without objects for which an equality among its parts decides a formula; None if it always does.
+
+    So does one of a conjunction that fails, and one of a disjunction that holds: no fact is read then. A derived
+    predicate with parameters of narrower types has such an equality.
+    """
+    for part in formula.parts:
+        equality = part.part if isinstance(part, Not) else part
+        if not isinstance(equality, Equal):
+            continue
+        narrowed = _equated(equality, terms, objects)
+        if isinstance(formula, And) == (equality is part):  # a conjunction with it, or a disjunction with its negation
+            if narrowed is None:
+                return None
+            terms = narrowed
+        elif all(isinstance(terms.get(x, x), str) for x in (equality.left, equality.right)) and narrowed is not None:
+            return None
+    return terms
+
+
+def _equated(equality: Equal, terms: Terms, objects: Objects) -> Terms | None:
+    """The terms with both sides the same object, if one side is an object; None if they cannot be."""
+    left, right = (terms.get(side, side) for side in (equality.left, equality.right))
+    if isinstance(left, Typed) and isinstance(right, Typed):
+        return terms
+    if isinstance(left, Typed):
+        return {**terms, equality.left: right} if right in objects.of(left) else None
+    if isinstance(right, Typed):
+        return {**terms, equality.right: left} if left in objects.of(right) else None
+    return terms if left == right else None
 
 
 def names(atom: Atom, terms: Terms, fact: Fact, objects: Objects) -> bool:

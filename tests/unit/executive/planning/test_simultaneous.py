@@ -158,3 +158,21 @@ def test_a_quantifier_over_no_objects_reads_nothing(settings):
     result = solve(domain, problem, settings)
     assert validate(result.plan, domain, problem) == ""
     assert len(set(starts(result).values())) == 1
+
+
+@pytest.mark.parametrize("settings", BOTH, ids=["ground", "lifted"])
+@pytest.mark.parametrize(("read_by", "apart"), [("a", True), ("b", False)])
+def test_a_derived_predicate_of_a_narrower_type_reads_what_its_argument_does(read_by, apart, settings):
+    actions = [
+        action("one", "(at start (or (q) (ready ?x)))", f"(when (at start (= ?x {read_by})) (at end (g)))", "?x"),
+        action("two", "", "(at start (p a)) (at end (r))"),
+    ]
+    derived = "(:types item) (:derived (ready ?i - item) (not (p ?i)))"
+    predicates = "(:constants a b - item) (:predicates (p ?x) (q) (r) (g) (ready ?x))"
+    domain, problem = read(
+        f"(define (domain d) (:requirements :adl :durative-actions) {predicates} {derived} {' '.join(actions)})",
+        "(define (problem x) (:domain d) (:init (q)) (:goal (and (g) (r))))",
+    )
+    result = solve(domain, problem, settings)
+    assert validate(result.plan, domain, problem) == ""
+    assert (len(set(starts(result).values())) == 2) == apart
