@@ -1,4 +1,4 @@
-"""Reads the episodes of one recording; messages that cannot be decoded are counted and left out."""
+"""Reads the episodes of one recording; messages that cannot be decoded, or are missing, are counted and left out."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tailor.executive.interfaces.domain import Domain
 from tailor.models.episodes.episodes import Episode
+from tailor.runtime.recordings.mcap.scan import DamageReport
 from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import decode
 from tailor.schemas.errors import Rejected, UsageError
@@ -20,6 +21,7 @@ from tailor.tools.lockstep.episode_extraction import EpisodeExtractor
 READ = (Subgoals, Contexts, ExecStatus, ActionFinished)  # besides sensors and ground truth
 # An action that the extractor forgets, and goals that it must not take for those of what runs now.
 FORGOTTEN = (ActionFinished(0, 0, "", 0, "aborted", "", 0.0, 0.0), Subgoals(0, 0, 0))
+MISSING, DISORDERED = "missing", "out of order"
 
 
 class RecordedEpisodes:
@@ -27,7 +29,8 @@ class RecordedEpisodes:
 
     The executive rejected a damaged sensor message as well and believed on without it. So its episode stays; only the
     drives' work is unknown, as it is summed over all states of motion. A damaged message of the executive, or of the
-    ground truth, may hide a goal, a tick or a failure: the action that ran is left out.
+    ground truth, may hide a goal, a tick or a failure: the action that ran is left out. So is one during which numbers
+    of the executive's messages are missing, as in a damaged chunk, or out of order, as with a clock that was set back.
 
     Args:
       path: Recording of a run.
@@ -35,9 +38,10 @@ class RecordedEpisodes:
 
     Attributes:
       episodes: Name of the duration model's data set, and the episode.
-      left_out: Number of messages that could not be decoded, by key.
+      left_out: Number of messages that could not be decoded, or are missing, by key.
       reasons: Their reasons, by key.
       sensors: Keys of sensors among them.
+      damage: Of the file.
 
     Raises:
       UsageError: The file is no recording, or of another robot's run.
@@ -49,6 +53,8 @@ class RecordedEpisodes:
         self.left_out: Counter[str] = Counter()
         self.reasons: defaultdict[str, set[str]] = defaultdict(set)
         self.sensors: set[str] = set()
+        self.damage = DamageReport()
+        self._numbers: dict[tuple[str, str], int] = {}  # of the newest message, by key and sender
         truth = (name for name, topic in TOPICS.items() if topic.source == "simulator")
         self._sensor_types = frozenset(TOPICS[name].type for name in domain.sensors)
         self._types = self._sensor_types | {*READ, *(TOPICS[name].type for name in truth)}
@@ -72,15 +78,31 @@ class RecordedEpisodes:
 
     def _messages(self) -> Iterator[Message | None]:
         """Messages in the order in which they were published; None for a sensor's that is left out."""
-        for recorded in sorted(open_recording(self.path).messages(), key=lambda m: m.publish_ns):
+        recording = open_recording(self.path)
+        messages = sorted(recording.messages(), key=lambda m: m.publish_ns)
+        self.damage = recording.damage
+        for recorded in messages:
             kind = type_of(recorded.ros_type)
             if kind is None or kind not in self._types:
                 continue
+            if kind in READ and not self._follows(recorded):
+                yield from FORGOTTEN
             message = decode(kind, recorded.data)
             if not isinstance(message, Rejected):
                 yield message
             else:
                 yield from self._substitutes(recorded, kind, message)
+
+    def _follows(self, recorded: Recorded) -> bool:
+        """Whether no message of its key and sender is missing before this one; counts those that are."""
+        identity, number = (recorded.key, recorded.sender), recorded.sequence
+        before = self._numbers.get(identity, number - 1)
+        self._numbers[identity] = number
+        if not recorded.sender or number == before + 1:  # the numbers of several senders mean nothing
+            return True
+        self.left_out[recorded.key] += max(1, number - before - 1)
+        self.reasons[recorded.key].add(MISSING if number > before else DISORDERED)
+        return False
 
     def _substitutes(self, recorded: Recorded, kind: type[Message], rejected: Rejected) -> tuple[Message | None, ...]:
         """What is read in place of a message that is left out."""

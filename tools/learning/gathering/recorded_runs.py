@@ -13,6 +13,7 @@ from tailor.models.episodes.episodes import Episode
 from tailor.schemas.errors import UsageError
 from tailor.tools.learning.gathering.recorded_episodes import RecordedEpisodes
 from tailor.tools.learning.gathering.run_data_sets import modelled_actions, prepare, write
+from tailor.tools.recordings.damage_notice import notice
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +22,7 @@ class Extracted:
 
     Attributes:
       counts: Number of episodes by action.
-      left_out: A line for each recording and topic with messages that could not be used.
+      left_out: A line for each damaged recording, and for each topic of one with messages that could not be used.
     """
 
     counts: Mapping[str, int]
@@ -31,7 +32,8 @@ class Extracted:
 def extract_from_recordings(domain: str, folder: Path, recordings: Sequence[Path]) -> Extracted:
     """Extract data sets from recordings.
 
-    Messages that cannot be decoded, e.g. of values that are not finite, are left out: see `RecordedEpisodes`.
+    Messages that cannot be decoded, e.g. of values that are not finite, are left out, and so are actions during which
+    some are missing: see `RecordedEpisodes`.
 
     Raises:
       UsageError: A file is not a recording of an executive's run, none holds a finished action, two hold the same
@@ -65,6 +67,8 @@ def _about(read: Sequence[RecordedEpisodes]) -> dict[str, Any]:
 
 
 def _lines(read: RecordedEpisodes) -> Iterator[str]:
+    if damage := notice(read.path, read.damage):
+        yield damage
     for key, count in read.left_out.items():
         messages = f"{count} message" if count == 1 else f"{count} messages"
         lost = "" if key in read.sensors else ", with the action that ran"

@@ -19,6 +19,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Odometry
 from tailor.tools.lockstep import bodies
 from tailor.tools.main import main
+from tests.unit.runtime.recordings.test_mcap_writer import chunk_bounds
 
 RECORDING = Path(__file__).parents[4] / "data" / "golden" / "soccer-approach-dribble.mcap"
 
@@ -124,6 +125,40 @@ def test_an_action_of_which_the_executive_s_own_words_are_damaged_is_left_out(
     counts, reported, _ = gather(copy_with_damage(tmp_path / "copy.mcap", key, {number}))
     assert {action: count for action, count in counts.items() if count} == left
     assert f"left out 1 message of {key}, with the action that ran (malformed)" in " ".join(reported.split())
+
+
+def chunked(path: Path, set_back_ns: int = 0) -> Path:
+    """A copy of the recording in chunks; in the midst of its first action the clock may be set back."""
+    writer = McapWriter(path, {})
+    for number, recorded in enumerate(open_recording(RECORDING).messages()):
+        back_ns = set_back_ns if number >= 300 else 0
+        sent = (recorded.log_ns - back_ns, recorded.data, recorded.publish_ns - back_ns, recorded.sequence)
+        writer.copy(recorded.key, recorded.declared, sent)
+        if number % 60 == 59:
+            writer.flush()
+    writer.close()
+    return path
+
+
+def test_an_action_in_the_midst_of_which_a_chunk_is_damaged_is_left_out(gather, tmp_path: Path) -> None:
+    """Its episode lacked ticks, so what was learned of the others had a wrong time to go; nothing was reported."""
+    path = chunked(tmp_path / "copy.mcap")
+    data = bytearray(path.read_bytes())
+    start, end = list(chunk_bounds(data))[4]
+    data[(start + end) // 2] ^= 0xFF
+    path.write_bytes(data)
+    counts, reported, _ = gather(path)
+    assert {action: count for action, count in counts.items() if count} == {"dribbleBall": 1}
+    words = " ".join(reported.split())
+    assert "copy.mcap is damaged: 14 chunks intact, 1 damaged" in words
+    assert "messages of exec/status, with the action that ran (missing)" in words
+
+
+def test_an_action_during_which_the_clock_was_set_back_is_left_out(gather, tmp_path: Path) -> None:
+    """Its ticks before and after that were mixed."""
+    counts, reported, _ = gather(chunked(tmp_path / "copy.mcap", set_back_ns=500_000_000))
+    assert {action: count for action, count in counts.items() if count} == {"dribbleBall": 1}
+    assert "of exec/status, with the action that ran (missing, out of order)" in " ".join(reported.split())
 
 
 def test_a_goal_that_cannot_be_read_is_never_replaced_by_the_one_before(gather, tmp_path: Path) -> None:
