@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ipaddress
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from tailor.runtime.bus.rights.credentials import AUTHORITY, CERTIFICATE, PRIVATE_KEY
+from tailor.runtime.stopping import undone_before_the_end
 from tailor.schemas.errors import UsageError
 from tailor.tools.keys.registry import AUTHORITY_KEY
 
@@ -79,8 +81,21 @@ def _make(keys: Path, now: datetime, days: int) -> None:
     builder = builder.issuer_name(x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "tailor authority")]))
     signed = builder.add_extension(x509.BasicConstraints(True, 0), critical=True).sign(key, hashes.SHA256())
     keys.mkdir(mode=0o700, parents=True, exist_ok=True)
-    (keys / AUTHORITY).write_bytes(_pem(signed))
-    _write_key(keys / AUTHORITY_KEY, key)
+    with _both_or_none(keys / AUTHORITY, keys / AUTHORITY_KEY):
+        (keys / AUTHORITY).write_bytes(_pem(signed))
+        _write_key(keys / AUTHORITY_KEY, key)
+
+
+@contextmanager
+def _both_or_none(*files: Path) -> Iterator[None]:
+    """Remove new files if the block that writes them fails, or a signal ends it: one of them would bar all others."""
+    with undone_before_the_end():
+        try:
+            yield
+        except BaseException:
+            for file in files:
+                file.unlink(missing_ok=True)
+            raise
 
 
 def _builder(name: str, key: ec.EllipticCurvePublicKey, now: datetime, days: int) -> x509.CertificateBuilder:

@@ -104,8 +104,18 @@ def _table(keys: str) -> dict[str, str]:
 
 
 def write_role(keys: str, name: str, role: str) -> None:
-    """Register a role, or REVOKED, for a name; the caller is the only writer."""
+    """Register a role, or REVOKED, for a name; the caller is the only writer.
+
+    Raises:
+      UsageError: The file cannot be read, or not be written, as on a full disk, and is as it was.
+    """
     path = Path(keys) / FILE
+    text = json.dumps({**_table(keys), name: role}, indent=2, sort_keys=True) + "\n"
     fresh = path.with_name(FRESH)
-    fresh.write_text(json.dumps({**_table(keys), name: role}, indent=2, sort_keys=True) + "\n")
-    fresh.replace(path)
+    try:
+        fresh.write_text(text, encoding="utf-8")
+        fresh.replace(path)
+    except OSError as error:  # that of a full disk names no file
+        with suppress(OSError):
+            fresh.unlink()
+        raise UsageError(f"{path}: {error.strerror}, expected a file that can be written") from error

@@ -15,6 +15,7 @@ from typing import get_args
 from tailor.runtime.bus.zenoh_config import check_endpoint, foreign_client
 from tailor.schemas.errors import UsageError
 from tailor.schemas.services import Role
+from tailor.tools.cli.output_folders import temporary_beside
 from tailor.tools.cli.systems.bus_settings import KEYS
 from tailor.tools.keys.registry import (
     REVOKED,
@@ -119,7 +120,7 @@ def _new(arguments: argparse.Namespace) -> None:
             check_unused(arguments.keys, name)
             _issue(arguments, folder)
     except OSError as error:
-        raise UsageError(f"{error.filename}: {error.strerror}, expected a place for keys") from error
+        raise UsageError(f"{error.filename or folder}: {error.strerror}, expected a place for keys") from error
     _report(arguments, str(folder), {"folder": str(folder)})
 
 
@@ -131,12 +132,15 @@ def _issue(arguments: argparse.Namespace, folder: Path) -> None:
         other = "a new name" if name != ROUTER else "one folder for it: remove that to make it anew, for more hosts say"
         raise UsageError(f"{folder}: exists already, expected {other}")
     authority = Authority.of(folder.parent, now, MAX_DAYS)  # --days is not for it: no key outlasts what signed it
-    authority.issue(folder, name, arguments.host, now, arguments.days)
-    if arguments.role:
-        write_role(arguments.keys, name, arguments.role)
-    if arguments.endpoint:
-        (folder / SESSION).write_text(foreign_client(arguments.endpoint, folder), encoding="utf-8")
-        (folder / SESSION).chmod(0o600)
+    with temporary_beside(folder) as beside:
+        unfinished = beside / name
+        authority.issue(unfinished, name, arguments.host, now, arguments.days)
+        if arguments.endpoint:
+            (unfinished / SESSION).write_text(foreign_client(arguments.endpoint, unfinished), encoding="utf-8")
+            (unfinished / SESSION).chmod(0o600)
+        if arguments.role:
+            write_role(arguments.keys, name, arguments.role)
+        unfinished.rename(folder)
 
 
 def _revoke(arguments: argparse.Namespace) -> None:

@@ -1,7 +1,9 @@
 """Keys of a deployment: who signs, what they are valid for, and who may read them. tests/faults tries them live."""
 
 import json
+import resource
 import stat
+from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from threading import Thread
 
@@ -23,6 +25,21 @@ def keys(tmp_path):
     folder = tmp_path / "keys"
     Authority.of(folder, NOW, 30).issue(folder / "driving", "driving", ["10.0.0.7", "robot.local"], NOW, 10)
     return folder
+
+
+@contextmanager
+def full_disk(limit):
+    """No file grows beyond so many bytes."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def everything_in(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def certificate(path):
@@ -235,3 +252,42 @@ def test_a_file_is_no_folder_of_keys(tmp_path, capsys):
     (tmp_path / "file").touch()
     assert main(["keys", "list", "--keys", str(tmp_path / "file")]) == 2
     assert "is a file, expected a folder of keys" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("limit", [100, 300], ids=["certificate", "private key"])
+def test_a_full_disk_leaves_no_half_of_an_authority_which_would_bar_all_keys(tmp_path, capsys, limit):
+    words = ["keys", "new", "router", "--host", "robot.local", "--keys", str(tmp_path / "keys")]
+    with full_disk(limit):
+        assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"tailor keys: {tmp_path / 'keys'}")
+    assert "File too large, expected" in line
+    assert everything_in(tmp_path) == {}
+    assert main(words) == 0
+
+
+@pytest.mark.parametrize("limit", [10, 300, 630])
+def test_a_full_disk_costs_no_name_and_leaves_no_half_of_a_key(keys, capsys, limit):
+    """The folder without a key barred its name; what was written for a foreign node had no key beside it."""
+    write_role(str(keys), "driving", "driver")
+    before = everything_in(keys)
+    words = ["keys", "new", "bridge", "--role", "driver", "--for", "tls/robot.local:7448", "--keys", str(keys)]
+    with full_disk(limit):
+        assert main(words) == 2
+    assert capsys.readouterr().err == f"tailor keys: {keys}: File too large, expected space for what is written there\n"
+    assert everything_in(keys) == before
+    assert main(words) == 0
+    assert sorted(path.name for path in (keys / "bridge").iterdir()) == [
+        "authority.pem", "certificate.pem", "key.pem", "session.json5"
+    ]  # fmt: skip
+    assert mode(keys / "bridge") == 0o700
+
+
+def test_a_full_disk_revokes_nothing_and_is_named(keys, capsys):
+    write_role(str(keys), "driving", "driver")
+    before = everything_in(keys)
+    with full_disk(10):
+        assert main(["keys", "revoke", "driving", "--keys", str(keys)]) == 2
+    expected = f"tailor keys: {keys / 'roles.json'}: File too large, expected a file that can be written\n"
+    assert capsys.readouterr().err == expected
+    assert everything_in(keys) == before
