@@ -20,11 +20,12 @@ SHOWN_DIGITS = 8  # of a sender, as `tailor info` shows them
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """A message with its key and its time of reception, seconds since the recording's first message."""
+    """A message with its key, its time of reception, seconds since the recording's first message, and its sender."""
 
     at_s: float
     key: str
     message: Message
+    sender: str = ""
 
 
 def timed(
@@ -65,7 +66,7 @@ def timed(
             continue
         began_ns = recorded.log_ns if began_ns is None else began_ns
         if message is not None:
-            yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message)
+            yield Timed((recorded.log_ns - began_ns) / 1e9, recorded.key, message, recorded.sender)
     if began_ns is None:
         raise UsageError(f"{path}: no readable message, expected a recording of a run")
     _check_sender(path, sender, executives)

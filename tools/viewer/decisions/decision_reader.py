@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from tailor.runtime.newest import Newest
 from tailor.schemas.messages import (
     ActionFinished,
     Contexts,
@@ -17,6 +18,8 @@ from tailor.schemas.messages import (
 )
 from tailor.tools.viewer.decisions.recorded_search import RecordedSearch
 from tailor.tools.viewer.timed_messages import Timed
+
+MAX_EXECUTIVES = 32  # whose provenance is remembered; a flood of sender ids must not grow this process
 
 
 @dataclass(slots=True)
@@ -31,6 +34,8 @@ class Decision:
       finished: End of that action.
       finished_s: Time of that end.
       objects: Objects near the actions, if there were any.
+      sender: The executive that decided.
+      provenance: What it had stated of itself by then; empty if nothing.
     """
 
     at_s: float
@@ -40,13 +45,15 @@ class Decision:
     finished: ActionFinished | None = None
     finished_s: float | None = None
     objects: Contexts | None = None
+    sender: str = ""
+    provenance: str = ""
 
 
 class DecisionReader:
     """Finds the decisions among the messages of a run, and keeps none of them.
 
     Attributes:
-      provenance: The first provenance of the run, as far as it has been read.
+      provenance: The first provenance of any executive, as far as it has been read.
       first_s: Time of the first decision.
       end_s: Time of the last message.
     """
@@ -55,6 +62,7 @@ class DecisionReader:
         self.provenance = ""
         self.first_s: float | None = None
         self.end_s = 0.0
+        self._stated: Newest[str, str] = Newest(MAX_EXECUTIVES)  # newest provenance, by sender
         self._replaced: Decision | None = None  # the last but one: reports of its last tick may still come
         self._newest: Decision | None = None
         self._search = RecordedSearch()  # the present one
@@ -69,12 +77,24 @@ class DecisionReader:
             if isinstance(t.message, Subgoals):
                 if self._replaced is not None:
                     yield self._replaced
-                self._decide(t.at_s, t.message)
+                self._decide(t.at_s, t.message, t.sender)
+            elif isinstance(t.message, Provenance):
+                self._introduce(t.sender, t.message.json)
             else:
                 self._note(t.at_s, t.message)
         yield from (each for each in (self._replaced, self._newest) if each is not None)
 
-    def _decide(self, at_s: float, subgoals: Subgoals) -> None:
+    def provenance_of(self, decision: Decision) -> str:
+        """What the executive of a decision stated of itself, if it was recorded by then; else the first provenance."""
+        return decision.provenance or self.provenance
+
+    def _introduce(self, sender: str, provenance: str) -> None:
+        """Note a provenance, which comes again and again; kept is the first text of several that are equal."""
+        self.provenance = self.provenance or provenance
+        if self._stated.get(sender) != provenance:
+            self._stated.renew(sender, provenance)
+
+    def _decide(self, at_s: float, subgoals: Subgoals, sender: str) -> None:
         """Begin a decision, with the search if that reported in the same tick or the one before."""
         self.first_s = at_s if self.first_s is None else self.first_s
         if self._newest is not None:
@@ -83,12 +103,12 @@ class DecisionReader:
         fresh = report is not None and report.tick >= subgoals.tick - 1
         objects = self._objects if self._objects is not None and self._objects.tick == subgoals.tick else None
         search = self._search if fresh else RecordedSearch()
-        self._replaced, self._newest = self._newest, Decision(at_s, subgoals, search, objects=objects)
+        stated = self._stated.get(sender, "")
+        decision = Decision(at_s, subgoals, search, objects=objects, sender=sender, provenance=stated)
+        self._replaced, self._newest = self._newest, decision
 
     def _note(self, at_s: float, message: Message) -> None:
         match message:
-            case Provenance():
-                self.provenance = self.provenance or message.json
             case Contexts():
                 self._objects = message
             case TickReport():

@@ -17,7 +17,7 @@ from tailor.tools.viewer.decisions.explanation_text import certified_gap_pct
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.explanations.explanation import Explanation
 from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
-from tailor.tools.viewer.timed_messages import timed
+from tailor.tools.viewer.timed_messages import SHOWN_DIGITS, timed
 
 MAX_NAMED = 3  # actions of a sequence in a title; a word that the arm writes has dozens
 
@@ -60,12 +60,15 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
     if not decisions:
         raise UsageError(f"{recording}: {_no_decision(reader, at_s)}")
     explainer = Explainer()
-    explainer.load(reader.provenance)
-    if explainer.missing:
-        raise UsageError(f"{recording}: cannot load its domain and models: {explainer.missing}")
+    owners = {reader.provenance_of(each): each.sender[:SHOWN_DIGITS] for each in decisions}
+    for provenance, owner in owners.items():
+        explainer.load(provenance)
+        if explainer.missing:
+            which = f" of executive {owner} (--sender shows another alone)" if len(owners) > 1 else ""
+            raise UsageError(f"{recording}: cannot load its domain and models{which}: {explainer.missing}")
     if at_s is not None and (ended := ended_text(reader, decisions[0], at_s)):
         print(plain(f"{recording}: {ended}"), file=sys.stderr)
-    return (_explained(explainer, decision) for decision in decisions)
+    return (_explained(explainer, decision, reader.provenance_of(decision)) for decision in decisions)
 
 
 def _no_decision(reader: DecisionReader, at_s: float | None) -> str:
@@ -85,7 +88,8 @@ def ended_text(reader: DecisionReader, decision: Decision, at_s: float) -> str:
     return ""
 
 
-def _explained(explainer: Explainer, decision: Decision) -> ExplainedDecision:
+def _explained(explainer: Explainer, decision: Decision, provenance: str) -> ExplainedDecision:
+    explainer.load(provenance)  # a recording may hold several runs
     if decision.objects is not None:
         explainer.note(decision.objects)
     explanation = explainer.explanation(decision.subgoals)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tailor.runtime.recordings.mcap.writer import McapWriter
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas import messages as m
 from tailor.tools.commands.look import why
 from tailor.tools.viewer.decisions.decision_reader import DecisionReader, executed, in_force
@@ -139,6 +141,23 @@ def test_a_time_after_the_action_of_a_decision_has_none_in_force() -> None:
     )
     ended = "no decision was in force at 9 s: this one's action had ended at 4.0 s"
     assert [ended_text(reader, decision, at_s) for at_s in (1.0, 3.9, 4.04, 9.0)] == ["", "", "", ended]
+
+
+def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tmp_path: Path) -> None:
+    """The second was judged by the models of the first: nothing seemed to be free in a run of another domain."""
+    path, golden = tmp_path / "two.mcap", ROOT / "tests" / "data" / "golden"
+    writer = McapWriter(path, {})
+    for number, name in enumerate(("soccer-approach-dribble", "arm-word-I")):
+        for recorded in open_recording(golden / f"{name}.mcap").messages():
+            own = (("sender", f"{number + 1}{recorded.sender[1:]}"), ("key", recorded.key))
+            declared = dataclasses.replace(recorded.declared, metadata=own)
+            later_ns = number * 30 * 10**9
+            sent = (recorded.log_ns + later_ns, recorded.data, recorded.publish_ns + later_ns, recorded.sequence)
+            writer.copy(recorded.key, declared, sent)
+    writer.close()
+    explained = list(explained_decisions(path))
+    names = [each.decision.subgoals.actions[0].action for each in explained if each.explanation is not None]
+    assert names == ["approachBall", "reach", "reach", "reach"]
 
 
 def test_names_in_a_recording_are_neither_markup_nor_control_characters(capsys) -> None:
