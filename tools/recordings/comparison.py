@@ -13,6 +13,7 @@ import numpy as np
 from tailor.executive import domains
 from tailor.executive.deliberation.context import PERIOD_NS
 from tailor.executive.interfaces.values import Array
+from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
 from tailor.schemas.messages import ActionFinished, ExecStatus, JointCommand, PlanReport, Subgoals, VelocityCommand
@@ -149,7 +150,7 @@ class _Outlet:
 
     @classmethod
     def of(cls, run: RecordedRun, key: str) -> _Outlet:
-        recorded = [(r.log_ns / 1e9, decoded(r)) for r in run.published[key]]
+        recorded = [(_time_s(r, message := decoded(r)), message) for r in run.published[key]]
         values = [(at_s, _values(message)) for at_s, message in recorded if isinstance(message, Message)]
         names = tuple(values[0][1]) if values else ()
         rows = [(at_s, *named.values()) for at_s, named in values if tuple(named) == names]
@@ -160,6 +161,11 @@ class _Outlet:
         """Values in force half a period after these times: outlets of one tick are published one after another."""
         newest = np.searchsorted(self.rows[:, 0], times + PERIOD_NS / 2e9, side="right") - 1
         return self.rows[np.maximum(newest, 0), 1:]
+
+
+def _time_s(recorded: Recorded, message: Message) -> float:
+    """When a command was made, by the clock of its executive, which never goes back; if unstated, when it came."""
+    return (getattr(message, "stamp_ns", 0) or recorded.log_ns) / 1e9
 
 
 def _values(message: Any) -> dict[str, float]:

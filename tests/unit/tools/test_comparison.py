@@ -10,7 +10,7 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_of
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.recordings.mcap.writer import McapWriter
-from tailor.runtime.recordings.recording import Recorded
+from tailor.runtime.recordings.recording import Recorded, open_recording
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import (
     ActionFinished,
@@ -345,3 +345,29 @@ def test_all_outlets_of_a_robot_are_compared_axis_by_axis(tmp_path, capsys):
     run = compared_run(Path(one))
     assert run.axes == ("v [m/s]", "omega [rad/s]", "width [m]", "pan [rad/s]", "lift [rad/s]")
     assert run.commands[0].tolist() == [0.0, 0.5, 0.0, 0.05, 0.0, 0.2]
+
+
+@pytest.mark.parametrize("name", ["soccer-approach-dribble", "arm-word-I"])
+@pytest.mark.parametrize("back_ms", [80, 1500])
+def test_a_clock_that_was_set_back_makes_no_difference(tmp_path, capsys, name, back_ms):
+    """Commands were sought by times that came twice, or half a period apart: an equal run seemed to differ."""
+    path, back = Path(__file__).parents[2] / "data" / "golden" / f"{name}.mcap", tmp_path / "back.mcap"
+    messages = list(open_recording(path).messages())
+    writer = McapWriter(back, {})
+    for number, m in enumerate(messages):
+        earlier_ns = back_ms * MS * (number >= len(messages) // 2)
+        writer.copy(m.key, m.declared, (m.log_ns - earlier_ns, m.data, m.publish_ns, m.sequence))
+    writer.close()
+    code, compared = json_of(capsys, "compare", str(path), str(back))
+    assert (code, compared["commands"]["max"]) == (0, 0.0)
+
+
+def test_outlets_of_one_tick_stay_together_however_late_they_come(tmp_path):
+    script = Script(tmp_path / "a.mcap")
+    for tick in range(1, 11):
+        stamp_ns, late_ms = START_NS + tick * 100 * MS, 70 * (tick == 5)
+        script.say(tick * 100, "b21/cmd_vel", VelocityCommand(stamp_ns, 0.1 * tick, 0.0))
+        script.say(tick * 100 + late_ms, "b21/gripper_cmd", GripperCommand(stamp_ns, 0.01 * tick))
+        script.say(tick * 100 + 90, "exec/tick", replace(example(TickReport), tick=tick))
+    commands = compared_run(Path(script.close())).commands
+    assert commands[:, 1] == pytest.approx(10 * commands[:, 3])
