@@ -4,6 +4,7 @@ import argparse
 import getpass
 import importlib
 import inspect
+import resource
 import shlex
 import shutil
 import subprocess
@@ -220,6 +221,22 @@ def test_existing_files_are_kept_unless_forced(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["tailor-driver.service"], "nothing is written"
     assert units.run(parsed(str(tmp_path), "--user", "robot", "--force")) == 0
     assert (tmp_path / "tailor-driver.service").read_text() != "mine"
+
+
+def test_a_full_disk_takes_no_unit_that_was_there(tmp_path, capsys):
+    """Half of the new one stood in its place, which systemd starts at the next boot."""
+    assert main(["units", str(tmp_path), "--user", "robot"]) == 0
+    before = {file: file.read_text() for file in tmp_path.iterdir()}
+    capsys.readouterr()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (500, hard))
+    try:
+        assert main(["units", str(tmp_path), "--user", "robot", "--force"]) == 2
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert line == f"tailor units: {tmp_path}/tailor-bus.service: File too large, expected a file that can be written"
+    assert {file: file.read_text() for file in tmp_path.iterdir()} == before
 
 
 def parsed(*arguments):

@@ -22,6 +22,7 @@ from tailor.runtime.bus.rights.key_faults import check_files
 from tailor.runtime.bus.zenoh_config import check_endpoint
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import spec_of_robot
+from tailor.tools.cli.output_files import whole_output
 from tailor.tools.cli.systems.bus_settings import BusSettings, configure_hosting, with_hosting_flags
 from tailor.tools.cli.systems.deployment import executive_config
 from tailor.tools.cli.systems.endpoint import bus_settings, configure_bus
@@ -60,11 +61,12 @@ def run(arguments: argparse.Namespace) -> int:
         raise UsageError(f"{folder}: has {', '.join(existing)} already, expected --force to overwrite")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-            print(folder / name)
     except OSError as error:
         raise UsageError(f"{error.filename or folder}: {error.strerror}, expected a writable folder") from error
+    for name, text in files.items():
+        with whole_output(folder / name) as whole:
+            whole.write_text(text, encoding="utf-8")
+        print(folder / name)
     return 0
 
 
