@@ -60,7 +60,7 @@ class DamageReport:
 
     def text(self) -> str:
         """Summary in one line; empty for an undamaged file."""
-        if self.complete and not self.damaged_chunks and not self.lost_bytes:
+        if self.complete and not self.damaged_chunks and not self.lost_bytes and not self.reasons:
             return ""
         footer = "" if self.complete else "no footer; "
         reasons = f" ({'; '.join(self.reasons)})" if self.reasons else ""

@@ -4,6 +4,7 @@ import struct
 
 import pytest
 from mcap.reader import make_reader
+from mcap.writer import IndexType, Writer
 
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.recordings.copying import copy
@@ -87,6 +88,24 @@ def test_a_recording_that_is_appended_to_another_is_read_too_and_named(tmp_path)
     recording = open_recording(both(tmp_path / "ab.mcap", first, second))
     assert [m.sequence for m in recording.messages()] == [*range(1, 51), *range(1, 21)]
     assert f"another recording begins at byte {first.stat().st_size}" in recording.damage.text()
+
+
+def test_a_recording_without_an_index_that_is_appended_to_another_is_named_too(tmp_path):
+    """Its footer points nowhere, so nothing seemed to be wrong; other readers end at the first footer."""
+    bare = tmp_path / "b.mcap"
+    with bare.open("wb") as file:
+        kinds = {"repeat_channels": False, "repeat_schemas": False, "use_statistics": False}
+        writer = Writer(file, index_types=IndexType.NONE, use_summary_offsets=False, **kinds)
+        writer.start()
+        writer.add_message(writer.register_channel("/x", "json", 0), 1, b"{}", 1)
+        writer.finish()
+    assert open_recording(bare).metadata() == []
+    path = both(tmp_path / "ab.mcap", write_tape(tmp_path / "a.mcap"), bare)
+    recording = open_recording(path)
+    assert len(list(recording.messages())) == 51
+    assert "another recording begins at byte" in recording.damage.text()
+    assert main(["recover", str(path), "-o", str(tmp_path / "new.mcap")]) == 0
+    assert len(list(open_recording(tmp_path / "new.mcap").messages())) == 51
 
 
 def test_a_copy_of_appended_recordings_keeps_the_senders_of_both(tmp_path):
