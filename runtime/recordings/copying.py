@@ -15,6 +15,7 @@ from tailor.runtime.recordings.mcap.scan import DamageReport, scan
 from tailor.runtime.recordings.mcap.writer import CHUNK_BYTES
 from tailor.runtime.recordings.new_file import new_file
 
+PROFILE = "ros2"
 MAX_CHANNELS = 65_535  # their numbers have 16 bits
 Keep = Callable[[str, str, int], bool]  # key, ROS type, log time (ns)
 
@@ -86,7 +87,7 @@ class _Copy:
 
 
 def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> CopyResult:
-    """Copy the messages that `keep` selects, and all metadata, into a new file with index and footer.
+    """Copy the messages that `keep` selects, all metadata and attachments, into a new file with index and footer.
 
     Args:
       source: MCAP file, damaged or not.
@@ -98,10 +99,10 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
       UsageError: The source is missing or no MCAP file, or the target exists or cannot be written and is removed.
     """
     copied = CopyResult()
-    next(scan(source, DamageReport(), with_chunks=False), None)  # checks the source before the target is created
+    profile = _profile(source)  # checks the source before the target is created
     with new_file(target), target.open("xb") as file:
         writer: Any = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        writer.start(profile="ros2", library="tailor")
+        writer.start(profile=profile, library="tailor")
         _copy_records(source, _Copy(writer, Declared(source)), keep, copied)
         writer.add_metadata("copy", {"of": utf8_name(source), "damage": copied.damage.text(), **note})
         writer.finish()
@@ -113,12 +114,22 @@ def utf8_name(path: Path) -> str:
     return path.name.encode(errors="replace").decode()
 
 
+def _profile(source: Path) -> str:
+    """What a recording states of its messages; of one whose head is damaged, that of ours."""
+    heads = (record for record in scan(source, DamageReport(), with_chunks=False) if isinstance(record, r.Header))
+    return next((head.profile for head in heads), PROFILE)
+
+
 def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) -> None:
-    for record in scan(source, copied.damage):
+    for record in scan(source, copied.damage, with_attachments=True):
         if isinstance(record, r.Schema | r.Channel):
             copy_.declare(record)
         elif isinstance(record, r.Metadata):
             copy_.writer.add_metadata(record.name, record.metadata)
+        elif isinstance(record, r.Attachment):
+            copy_.writer.add_attachment(
+                record.create_time, record.log_time, record.name, record.media_type, record.data
+            )
         elif isinstance(record, r.Message):
             origin = copy_.origin(record)
             if origin is not None and keep(*origin, record.log_time) and copy_.write(record):

@@ -31,8 +31,13 @@ class Selection:
         return not self.include or any(_matches(pattern, key, ros_name) for pattern in self.include)
 
 
-def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
+def selection(include: Sequence[str], exclude: Sequence[str], everything: bool = False) -> Selection:
     """Parse a selection: words such as `odom`, `agilo/*`, `exec/**`, `nav_msgs/msg/Odometry`, separated by commas.
+
+    Args:
+      include: Texts with words; none: all.
+      exclude: Likewise, what is left out.
+      everything: Whether "all" includes what is recorded, or replayed, on request alone, such as a clock.
 
     Raises:
       UsageError: A word is neither a topic name nor a pattern nor a type, or `include` has texts without a word.
@@ -44,7 +49,9 @@ def selection(include: Sequence[str], exclude: Sequence[str]) -> Selection:
         if word not in TOPICS and "/" not in word and "*" not in word:
             names = ", ".join(TOPICS)
             raise UsageError(f"topic {word!r}: expected a name ({names}), a key pattern like agilo/* or a type")
-    unrecorded = () if parts[0] else (*(name for name, topic in TOPICS.items() if not topic.recorded), ACTION)
+    unrecorded = (
+        () if parts[0] or everything else (*(name for name, topic in TOPICS.items() if not topic.recorded), ACTION)
+    )
     return Selection(parts[0], parts[1] + unrecorded)
 
 

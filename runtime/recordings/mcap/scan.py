@@ -74,13 +74,14 @@ class DamageReport:
             self.reasons.append(reason)
 
 
-def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator[Any]:
+def scan(path: Path, damage: DamageReport, with_chunks: bool = True, with_attachments: bool = False) -> Iterator[Any]:
     """Header, schemas, channels, messages and metadata in file order; fills in `damage`.
 
     Args:
       path: The file.
       damage: Filled in; complete when the iterator is exhausted.
       with_chunks: False skips all messages, which is fast.
+      with_attachments: Whether attachments are read, too, which other tools write.
 
     Raises:
       UsageError: The file is missing, or not an MCAP file.
@@ -94,13 +95,15 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True) -> Iterator
             for opcode, data in end.declarations(file):
                 yield from _one(_KINDS[opcode].read, data, DamageReport())
             file.seek(len(MAGIC))
-            yield from _records(file, size, damage, with_chunks, end)
+            yield from _records(file, size, damage, (with_chunks, with_attachments), end)
             damage.complete = end.start >= 0
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
 
 
-def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool, end: FileEnd) -> Iterator[Any]:
+def _records(
+    file: IO[bytes], size: int, damage: DamageReport, wanted: tuple[bool, bool], end: FileEnd
+) -> Iterator[Any]:
     while True:
         start = file.tell()
         head = file.read(HEAD.size)
@@ -122,7 +125,7 @@ def _records(file: IO[bytes], size: int, damage: DamageReport, with_chunks: bool
                 return
             file.seek(_next_start(file, start + 1, size))  # past an index that is damaged, or of another recording
         else:
-            yield from _record(file, opcode, length, damage, with_chunks)
+            yield from _record(file, opcode, length, damage, wanted)
 
 
 def _is_record(opcode: int, length: int, left: int) -> bool:
@@ -131,11 +134,16 @@ def _is_record(opcode: int, length: int, left: int) -> bool:
     return possible and (opcode != Opcode.DATA_END or length == DATA_END_BYTES)
 
 
-def _record(file: IO[bytes], opcode: int, length: int, damage: DamageReport, with_chunks: bool) -> Iterator[Any]:
+def _record(
+    file: IO[bytes], opcode: int, length: int, damage: DamageReport, wanted: tuple[bool, bool]
+) -> Iterator[Any]:
+    with_chunks, with_attachments = wanted
     if opcode == Opcode.CHUNK and with_chunks:
         yield from _chunk(file.read(length), damage)
     elif opcode == Opcode.MESSAGE and with_chunks:
         yield from _one(partial(r.Message.read, length=length), file.read(length), damage)
+    elif opcode == Opcode.ATTACHMENT and with_attachments:
+        yield from _one(partial(_attachment, data := file.read(length)), data, damage)
     elif opcode in _KINDS and opcode != Opcode.CHUNK:
         yield from _one(_KINDS[opcode].read, file.read(length), damage)
     else:
@@ -168,6 +176,14 @@ def _next_start(file: IO[bytes], start: int, size: int) -> int:
         at += max(len(window) - CHUNK_HEAD_BYTES, 0)
         window = window[-CHUNK_HEAD_BYTES:]
     return size
+
+
+def _attachment(data: bytes, stream: ReadDataStream) -> Any:
+    """An attachment; raises ValueError if its checksum, its last four bytes, is wrong."""
+    crc = int.from_bytes(data[-4:], "little")
+    if crc and zlib.crc32(data[:-4]) != crc:
+        raise ValueError("wrong checksum")
+    return r.Attachment.read(stream)
 
 
 def _one(read: Any, data: bytes, damage: DamageReport) -> Iterator[Any]:

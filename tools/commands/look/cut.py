@@ -1,4 +1,4 @@
-"""Cut a time span or some topics out of a recording; bytes and metadata are unchanged."""
+"""Cut a time span or some topics out of a recording; bytes, metadata and attachments are unchanged."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.end is not None and not arguments.start < arguments.end < MAX_S:
         raise UsageError(f"--to is {arguments.end:g}, expected more than --from {arguments.start:g}")
     recording = open_recording(arguments.file)
-    wanted = selection(arguments.topics, arguments.exclude)
+    wanted = selection(arguments.topics, arguments.exclude, everything=True)
     first = next(recording.messages(), None)
     zero_ns = 0 if first is None else first.log_ns
     # the first message need not be the earliest

@@ -1,4 +1,4 @@
-"""Recover a damaged recording: copy every readable chunk, write index and footer, report the rest."""
+"""Recover a damaged recording: copy every readable chunk and attachment, write index and footer, report the rest."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
     """0, also if the file is not damaged; 1 if no message could be recovered."""
     source = Path(arguments.file)
     damage = DamageReport()
-    for _ in scan(source, damage):
+    for _ in scan(source, damage, with_attachments=True):
         pass
     if not damage.text():
         _print(arguments.json, {"file": str(source), "damage": ""}, f"{source}: not damaged, nothing to recover")

@@ -1,6 +1,8 @@
 """Playback clock, playback, cutting and recovery without a bus."""
 
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from tailor.runtime.recordings.copying import copy
 from tailor.runtime.recordings.playback_clock import PlaybackClock
@@ -11,6 +13,7 @@ from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState
 from tailor.schemas.own import example
+from tailor.tools.main import main
 from tailor.tools.recordings.playback import RecordingPart, remapping
 from tailor.tools.recordings.substitution import armed_for
 from tests.unit.runtime.recordings.test_mcap_writer import S, write_tape
@@ -149,6 +152,41 @@ def test_a_cut_keeps_bytes_times_and_metadata(tmp_path):
     metadata = dict(cut.metadata())
     assert metadata["made"] == {"by": "test"}
     assert metadata["copy"] == {"of": "a.mcap", "damage": "", "from_s": "9"}
+
+
+def foreign(path, spoil=False):
+    """A recording of another program: with the time of a simulator, an attachment, and another profile."""
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="x-lab", library="other")
+        writer.add_attachment(1, 2, "camera.yaml", "text/yaml", b"focal: 525")
+        for topic in ("/clock", "/camera"):
+            writer.add_message(writer.register_channel(topic, "json", 0), S, b"{}", S)
+        writer.finish()
+    if spoil:
+        path.write_bytes(path.read_bytes().replace(b"focal: 525", b"focal: 595", 1))
+    return path
+
+
+def test_a_cut_of_another_program_s_recording_keeps_its_clock_profile_and_attachments(tmp_path, capsys):
+    """The clock was left out as if it were a replay's, attachments were lost, and all was said to be of ROS 2."""
+    assert main(["cut", str(foreign(tmp_path / "a.mcap")), "-o", str(tmp_path / "b.mcap")]) == 0
+    assert "b.mcap: 2 messages of 2" in capsys.readouterr().out
+    with (tmp_path / "b.mcap").open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        assert reader.get_header().profile == "x-lab"
+        (kept,) = reader.iter_attachments()
+        assert [channel.topic for _, channel, _ in reader.iter_messages()] == ["/clock", "/camera"]
+    assert (kept.create_time, kept.log_time, kept.name, kept.data) == (1, 2, "camera.yaml", b"focal: 525")
+
+
+def test_a_damaged_attachment_is_reported_and_not_copied(tmp_path, capsys):
+    path, new = foreign(tmp_path / "a.mcap", spoil=True), tmp_path / "b.mcap"
+    assert main(["recover", str(path), "-o", str(new)]) == 0
+    assert "bytes lost (a record is damaged: ValueError)" in capsys.readouterr().out
+    with new.open("rb") as file:
+        assert list(make_reader(file).iter_attachments()) == []
+    assert len(list(open_recording(new).messages())) == 2
 
 
 def test_recovering_a_truncated_file_gives_a_complete_one_and_reports_the_loss(tmp_path):
