@@ -70,7 +70,7 @@ class Survey:
     late_ms: list[float] = field(default_factory=list)
     work_ms: list[float] = field(default_factory=list)
     skipped: int = 0  # whole periods lost
-    _mode: dict[str, str] = field(default_factory=dict)
+    _mode: dict[tuple[str, str], str] = field(default_factory=dict)  # last one, by key and sender
     _results: dict[str, _Result] = field(default_factory=dict)  # last one, by sender
 
     @property
@@ -111,9 +111,9 @@ def _percentile(ordered: list[float], q: int) -> float:
 def _status(counted: Survey, recorded: Recorded, message: ExecStatus) -> None:
     key, sender = recorded.key, recorded.sender
     counted.modes[message.mode] += 1
-    if message.mode == "FAULT" and counted._mode.get(key) != "FAULT":
+    if message.mode == "FAULT" and counted._mode.get((key, sender)) != "FAULT":
         counted.faults.append(reason_text(message.reason, message.detail))
-    counted._mode[key] = message.mode
+    counted._mode[key, sender] = message.mode
     last = counted._results.get(sender)
     if not message.result:
         counted._results.pop(sender, None)
@@ -124,10 +124,10 @@ def _status(counted: Survey, recorded: Recorded, message: ExecStatus) -> None:
 
 
 def _driver(counted: Survey, recorded: Recorded, message: DriverState) -> None:
-    key = recorded.key
-    if message.mode in ("stopped", "estopped") and counted._mode.get(key) != message.mode:
+    key, sender = recorded.key, recorded.sender
+    if message.mode in ("stopped", "estopped") and counted._mode.get((key, sender)) != message.mode:
         counted.stops.append(f"{key.partition('/')[0]}: {reason_text(message.reason, message.detail)}")
-    counted._mode[key] = message.mode
+    counted._mode[key, sender] = message.mode
 
 
 def _finished(counted: Survey, _: Recorded, message: ActionFinished) -> None:

@@ -117,6 +117,19 @@ def test_info_summarises_a_recording(tmp_path, capsys):
     assert info["ticks"]["skipped_periods"] == 1
 
 
+def test_info_counts_one_fault_of_an_executive_beside_another_and_one_stop_of_a_driver(tmp_path, capsys):
+    """Each status of the one in FAULT passed for a new fault, as the other one was in another mode between them."""
+    script = Script(tmp_path / "a.mcap")
+    status, driver = example(ExecStatus), example(DriverState)
+    for tick in range(1, 11):
+        for sender, mode in ((EXECUTIVE, "FAULT"), (DRIVER, "EXECUTING")):
+            script.say(tick * 100, "exec/status", replace(status, tick=tick, mode=mode, reason="no"), sender)
+        for sender, mode in ((EXECUTIVE, "stopped"), (DRIVER, "disarmed")):
+            script.say(tick * 100, "agilo/driver", replace(driver, mode=mode, reason="r"), sender)
+    _, info = json_of(capsys, "info", script.close())
+    assert (info["faults"], info["driver_stops"]) == (["no"], ["agilo: r"])
+
+
 def test_info_states_why_an_action_was_given_up_and_no_error_of_its_model(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "120")
     script = Script(tmp_path / "a.mcap")
