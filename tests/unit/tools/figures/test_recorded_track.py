@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from tailor.runtime.recordings import recording
+from tailor.runtime.recordings.mcap.writer import McapWriter
+from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import DriverState, ExecStatus, Provenance
 from tailor.tools.figures.recorded_track import recorded_track
@@ -58,3 +60,44 @@ def test_a_track_counts_the_restarts_of_the_driver() -> None:
     assert restarts == sorted(restarts)
     assert set(restarts) == {0, 1}
     assert {point.restart for point in track_of("t", own, "soccer").points} == {0}
+
+
+def two_runs(path, *names):
+    """A recording of several runs one after another."""
+    writer = McapWriter(path, {})
+    for number, name in enumerate(names):
+        for recorded in open_recording(GOLDEN / f"{name}.mcap").messages():
+            own = (("key", recorded.key), ("sender", f"{number + 1}{recorded.sender[1:]}"))
+            later_ns = number * 30 * 10**9
+            sent = (recorded.log_ns + later_ns, recorded.data, recorded.publish_ns + later_ns, recorded.sequence)
+            writer.copy(recorded.key, replace(recorded.declared, metadata=own), sent)
+    writer.close()
+    return path
+
+
+@pytest.mark.parametrize("second", ["soccer-kicked-ball", "arm-word-I"])
+def test_of_two_runs_in_a_file_the_first_is_drawn_and_the_other_named(tmp_path, capsys, second):
+    """Their actions have the same numbers, so they were drawn as one; joints of an arm passed for a drive."""
+    first = recorded_track("t", GOLDEN / "soccer-approach-dribble.mcap")
+    capsys.readouterr()
+    track = recorded_track("t", two_runs(tmp_path / "two.mcap", "soccer-approach-dribble", second))
+    assert track == first
+    named = "two.mcap holds 2 runs: the first one, of executive 10000000, is drawn\n"
+    assert capsys.readouterr().err == named
+
+
+def test_a_run_without_an_action_is_not_the_first_one(tmp_path, capsys):
+    """An executive that was started anew may do all the work."""
+    track = recorded_track("t", GOLDEN / "soccer-approach-dribble.mcap")
+    idle = tmp_path / "idle.mcap"
+    writer = McapWriter(idle, {})
+    for recorded in open_recording(GOLDEN / "arm-word-I.mcap").messages():
+        if recorded.key == "exec/provenance":
+            sent = (recorded.log_ns, recorded.data, recorded.publish_ns, recorded.sequence)
+            writer.copy(recorded.key, replace(recorded.declared, metadata=(("sender", "ab" * 16),)), sent)
+    for recorded in open_recording(GOLDEN / "soccer-approach-dribble.mcap").messages():
+        sent = (recorded.log_ns, recorded.data, recorded.publish_ns, recorded.sequence)
+        writer.copy(recorded.key, recorded.declared, sent)
+    writer.close()
+    assert recorded_track("t", idle) == track
+    assert capsys.readouterr().err == ""
