@@ -54,6 +54,7 @@ class RecordedEpisodes:
         self.reasons: defaultdict[str, set[str]] = defaultdict(set)
         self.sensors: set[str] = set()
         self.damage = DamageReport()
+        self._decider: str | None = None  # executive of the newest decision
         self._numbers: dict[tuple[str, str], int] = {}  # of the newest message, by key and sender
         truth = (name for name, topic in TOPICS.items() if topic.source == "simulator")
         self._sensor_types = frozenset(TOPICS[name].type for name in domain.sensors)
@@ -88,6 +89,8 @@ class RecordedEpisodes:
             if kind in READ and not self._follows(recorded):
                 yield from FORGOTTEN
             message = decode(kind, recorded.data)
+            if isinstance(message, Subgoals) and self._is_of_another(recorded):
+                yield from FORGOTTEN
             if not isinstance(message, Rejected):
                 yield message
             else:
@@ -103,6 +106,11 @@ class RecordedEpisodes:
         self.left_out[recorded.key] += max(1, number - before - 1)
         self.reasons[recorded.key].add(MISSING if number > before else DISORDERED)
         return False
+
+    def _is_of_another(self, recorded: Recorded) -> bool:
+        """Whether another executive decides now, as after a crash: its action may have number and goal of the last."""
+        before, self._decider = self._decider, recorded.sender
+        return before not in (None, recorded.sender)
 
     def _substitutes(self, recorded: Recorded, kind: type[Message], rejected: Rejected) -> tuple[Message | None, ...]:
         """What is read in place of a message that is left out."""

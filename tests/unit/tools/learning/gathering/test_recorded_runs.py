@@ -161,6 +161,23 @@ def test_an_action_during_which_the_clock_was_set_back_is_left_out(gather, tmp_p
     assert "of exec/status, with the action that ran (missing, out of order)" in " ".join(reported.split())
 
 
+def test_an_action_of_an_executive_that_was_killed_is_not_continued_by_the_next_one(gather, tmp_path: Path) -> None:
+    """Number and goal of the actions are equal, so they were taken for one, of as many ticks as both."""
+    _, _, alone = gather(RECORDING)
+    path, messages = tmp_path / "copy.mcap", list(open_recording(RECORDING).messages())
+    writer = McapWriter(path, {})
+    for recorded, later_ns in [*((m, 0) for m in messages[:300]), *((m, 30 * 10**9) for m in messages)]:
+        sender = recorded.sender if later_ns == 0 or recorded.sender[0] == "d" else "ab" * 16
+        origin = pack(Origin(recorded.sequence + 1000 * (later_ns > 0), recorded.publish_ns + later_ns, sender))
+        encoding = encoding_named(recorded.ros_type)
+        writer.write(Raw(recorded.key, recorded.data, origin, encoding, True, None), recorded.log_ns + later_ns)
+    writer.close()
+    _, reported, out = gather(path)
+    assert reported == ""
+    (one,), (other,) = (read_data_set(folder / "approachBall").episodes for folder in (alone, out))
+    assert np.array_equal(one.ticks, other.ticks)
+
+
 def test_a_goal_that_cannot_be_read_is_never_replaced_by_the_one_before(gather, tmp_path: Path) -> None:
     whole, _, _ = gather(RECORDING)
     last = sum(recorded.key == "exec/subgoals" for recorded in open_recording(RECORDING).messages()) - 1
