@@ -10,6 +10,8 @@ from pathlib import Path
 from tailor.runtime.stopping import undone_before_the_end
 from tailor.schemas.errors import UsageError
 
+PERMISSIONS = 0o777
+
 
 def check_output(flag: str, output: Path, suffixes: Sequence[str]) -> None:
     """Refuse a file of another kind, so that no recording is overwritten, and a folder.
@@ -61,6 +63,8 @@ def whole_output(output: Path) -> Iterator[Path]:
             is_device = place.exists() and not place.is_file()
             yield place if is_device else temporary
             if not is_device:
+                if place.exists():  # whom its user lets read it
+                    temporary.chmod(place.stat().st_mode & PERMISSIONS)
                 temporary.replace(place)
         except OSError as error:
             raise UsageError(f"{output}: {error.strerror or error}, expected a file that can be written") from error

@@ -153,6 +153,17 @@ def test_a_link_is_written_through(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["link.png", "real.png"]
 
 
+def test_a_file_that_others_may_not_read_stays_so(tmp_path):
+    """A page that was for its user alone could be read by all once it was written anew."""
+    output = tmp_path / "x.html"
+    output.write_text("old")
+    output.chmod(0o600)
+    with whole_output(output) as whole:
+        whole.write_text("new")
+    assert output.read_text() == "new"
+    assert output.stat().st_mode & 0o777 == 0o600
+
+
 def test_a_read_only_file_is_kept(tmp_path, monkeypatch):
     output = tmp_path / "x.png"
     output.write_bytes(b"mine")
