@@ -19,7 +19,8 @@ Array = NDArray[np.float64]
 
 # Of networks that take as long as those of the usual shape. They follow jumps better, but are less easily bounded.
 DEEP: Mapping[str, int] = {"depth": 3, "width": 48}
-MIN_SCALE = 1e-9  # of a feature that does not vary
+MIN_SCALE = 1e-9  # of targets that do not vary
+MIN_SHARE = 1e-5  # of a feature's largest value: one that varies by less is constant but for single precision
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ class NetworkRegressor(RegressionModel):
           ValueError: The rows are not finite numbers.
         """
         X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64)
-        centre, scale = X.mean(axis=0), np.maximum(X.std(axis=0), MIN_SCALE)
+        centre, scale = X.mean(axis=0), _scale(X)
         mean, spread = float(y.mean()), max(float(y.std()), MIN_SCALE)
         rows, targets = ((X - centre) / scale).astype(np.float32), ((y - mean) / spread).astype(np.float32)
         rng = np.random.default_rng(self.random_state)
@@ -75,6 +76,12 @@ class NetworkRegressor(RegressionModel):
             rows = np.maximum(layer.weights @ rows + layer.bias, np.float32(0))
         each = (self.layers_[-1].weights @ rows + self.layers_[-1].bias)[:, 0]
         return np.clip(each.mean(axis=0), self.low_, self.high_), each.std(axis=0)
+
+
+def _scale(X: Array) -> Array:
+    """Standard deviation of each feature, (f,); 1 of one that does not vary, whose weights would grow to millions."""
+    deviation = X.std(axis=0)
+    return np.where(deviation > MIN_SHARE * np.abs(X).max(axis=0), deviation, 1.0)
 
 
 def _unscaled(fitted: Networks, centre: Array, scale: Array, mean: float, spread: float) -> tuple[Layer, ...]:
