@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -151,10 +151,19 @@ def marker_name(first: int, end: int) -> str:
 def unfinished(folder: Path, manifest: Mapping[str, Any]) -> str:
     """How much of a data set was not gathered, as "3 of 9 runs", as far as names of files tell; empty if all was.
 
-    They do not tell it of selected episodes, and of runs whose markers were left behind.
+    They do not tell it of selected episodes, and of runs whose markers were left behind. Where more runs were asked for
+    later, the marker of a shorter last chunk stays beside that of the whole one.
     """
     drawn = manifest.get("stream") is not None
     wanted, name, place = ("episodes", _PART, folder) if drawn else ("runs", _RUNS, folder.parent)
-    finished = [each for path in place.iterdir() if (each := name.fullmatch(path.name))]
-    count, total = sum(int(each[2]) - int(each[1]) for each in finished), manifest.get(wanted) or 0
+    finished = [(int(each[1]), int(each[2])) for path in place.iterdir() if (each := name.fullmatch(path.name))]
+    count, total = _covered(finished), manifest.get(wanted) or 0
     return f"{total - count} of {total} runs" if finished and count < total else ""
+
+
+def _covered(spans: Iterable[tuple[int, int]]) -> int:
+    """How many numbers lie in any of the spans, each from its first to before its second number."""
+    count = end = 0
+    for first, last in sorted(spans):
+        count, end = count + max(0, last - max(first, end)), max(end, last)
+    return count

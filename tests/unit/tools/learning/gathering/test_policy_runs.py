@@ -61,6 +61,7 @@ def test_a_missing_model_is_noticed_before_any_folder_is_made(tmp_path):
     [
         (["runs-000000-000010.done", "runs-000010-000016.done"], ""),
         (["runs-000010-000016.done"], "10 of 16 runs"),
+        (["runs-000000-000006.done", "runs-000000-000010.done"], "6 of 16 runs"),  # first six, then more were asked for
         ([], ""),  # pulled from a hub: nothing tells
     ],
 )
