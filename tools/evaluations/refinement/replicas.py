@@ -73,13 +73,14 @@ def replica(recipe: Recipe, number: int, store: Path, jobs: int) -> Making:
     """
     shipped = recipe_of(recipe.robot)
     training = replace(shipped.training, seed=FIRST_SEED + SEEDS * number)  # a set differs in all that is drawn
-    own = replace(shipped, seed=training.seed, training=training)
+    own, work = replace(shipped, seed=training.seed, training=training), store / "replicas"
     if recipe.episodes is not None:
+        work /= str(recipe.episodes)  # a folder of more episodes than are asked for is refused
         own = replace(own, episodes=recipe.episodes, random=(), uncertain=())
     if recipe.runs is not None:
         rounds = (Round("on-policy", recipe.scenarios, recipe.runs),) if recipe.runs else ()
         own = replace(own, rounds=rounds, calibration=())
-    making = Making(recipe.robot, own, store / "replicas", jobs, "tailor evaluate refinement --models", CHOOSING)
+    making = Making(recipe.robot, own, work, jobs, "tailor evaluate refinement --models", CHOOSING)
     show(make(making), False, {}, f"model {number}: ")
     return making
 

@@ -41,6 +41,8 @@ from tailor.tools.evaluations.refinement import (
 from tailor.tools.evaluations.refinement.paired_outcomes import columns, is_better
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.evaluations.task_runs import paired, run_one
+from tailor.tools.learning.gathering import random_episodes
+from tailor.tools.learning.making.episodes import gather_random
 from tailor.tools.learning.recipe_file import read_recipe, recipe_path
 from tailor.tools.main import main
 
@@ -338,6 +340,16 @@ def test_a_model_trained_anew_is_made_once_and_is_another_than_the_next(tmp_path
     made = _files(tmp_path)
     assert replicas.replica(recipe, 1, tmp_path, 2).zoo == first
     assert _files(tmp_path) == made
+
+
+def test_sets_of_models_of_fewer_episodes_follow_those_of_more(monkeypatch, tmp_path):
+    """They were refused, and so was each set that was finished once one of more episodes had been begun."""
+    monkeypatch.setattr(random_episodes, "gather", lambda *_: iter(()))  # folders and manifests alone
+    monkeypatch.setattr(replicas, "make", gather_random)
+    for count in (None, 300, 60, 300, None):
+        made = replicas.replica(replicas.Recipe("soccer", ("waypoints",), count, 0), 1, tmp_path, 1)
+        manifest = json.loads((made.random / "goToPose" / "manifest.json").read_text())
+        assert manifest["episodes"] == made.recipe.episodes_of("goToPose")
 
 
 def _files(folder):
