@@ -10,7 +10,8 @@ from typing import Any
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_writable
 from tailor.tools.evaluations.catalogue import ALL, EVALUATIONS, Chosen, chosen_of, domains_of, names_and_flags
-from tailor.tools.evaluations.pages.overview import page_is_of, write_overview
+from tailor.tools.evaluations.pages.finished import asked_of, exit_code_of, forget, note
+from tailor.tools.evaluations.pages.overview import write_overview
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.lockstep.blame import blamed_on_run
@@ -23,9 +24,9 @@ MISSED = 1  # exit code: the results of an evaluation are not what it tests for
 STOPPED = 128  # exit codes above it: a signal ended an evaluation
 EPILOG = """
 `tailor evaluate NAME --help` lists the flags of one evaluation. With `all`, each takes the flags that it has.
---resume: skip evaluations with a page of this source and these models in the report's folder. Finished episodes are
-kept in any case. The exit code is 1 if the results miss an evaluation's criterion (docs/evaluating.md), e.g. since too
-few starts prove nothing.
+--resume: skip evaluations with a page of this source, these models and these flags in the report's folder; their exit
+codes count. Finished episodes are kept in any case. The exit code is 1 if the results miss an evaluation's criterion
+(docs/evaluating.md), e.g. since too few starts prove nothing.
 
 examples:
   tailor evaluate refinement --domain soccer --scenario approach-dribble --json
@@ -85,21 +86,32 @@ def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
     """Run each evaluation; returns the maximum of their exit codes."""
     code = 0
     for name, module, settings in chosen:
-        if resume and settings.report is not None and _is_done(name, module, settings):
-            continue
-        done = _run_one(name, module, settings, everything)
-        if settings.report is not None:
-            write_overview(settings.report, list(EVALUATIONS))
+        if settings.report is None:
+            done = _run_one(name, module, settings, everything)
+        else:
+            known = _known(name, module, settings) if resume else None
+            done = _run_noted(name, module, settings, everything) if known is None else known
         if done > STOPPED:
             return done
         code = max(code, done)
     return code
 
 
-def _is_done(name: str, module: Any, settings: argparse.Namespace) -> bool:
-    """Whether the report's folder holds this evaluation's page, made of the source and the models of now."""
+def _known(name: str, module: Any, settings: argparse.Namespace) -> int | None:
+    """Exit code of an evaluation whose page is in the report's folder, of the source, models and flags of now."""
     domain = settings.domain or domains_of(module)[0]
-    return page_is_of(settings.report, name, seeds_of(domain, settings).provenance)
+    return exit_code_of(settings.report, name, asked_of(settings), seeds_of(domain, settings).provenance)
+
+
+def _run_noted(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:
+    """Run one evaluation that writes a page; a later --resume skips it unless it was stopped or could not run."""
+    folder, asked = settings.report, asked_of(settings)  # before it runs: some fill in their defaults
+    forget(folder, name)
+    code = _run_one(name, module, settings, everything)
+    if code <= MISSED:
+        note(folder, name, asked, code)
+    write_overview(folder, list(EVALUATIONS))
+    return code
 
 
 def _run_one(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:

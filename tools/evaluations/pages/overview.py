@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import html
 import json
-import re
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,6 @@ from tailor.tools.evaluations.pages.report import shown
 from tailor.tools.figures.report_page import page, table
 
 ROWS_MAX = 6
-HASHES, SHA256 = ("source_sha256", "models_sha256"), re.compile("[0-9a-f]{64}")
 # Main columns of all evaluations, in order.
 MAIN = (
     "scenario", "domain", "robot", "action", "chosen_in", "model", "run", "start", "mode", "space", "learner",
@@ -33,14 +31,6 @@ MAIN = (
 def page_is_there(folder: Path, name: str) -> bool:
     """Whether the folder holds the complete result of an evaluation."""
     return (folder / f"{name}.json").exists() and (folder / f"{name}.html").exists()
-
-
-def page_is_of(folder: Path, name: str, provenance: Mapping[str, Any]) -> bool:
-    """Whether the folder holds an evaluation's page, made of this source and these models as far as it states any."""
-    if not page_is_there(folder, name):
-        return False
-    stated = json.loads((folder / f"{name}.json").read_text("utf-8")).get("provenance", {})
-    return all(stated[key] == provenance[key] for key in HASHES if SHA256.fullmatch(stated.get(key, "")))
 
 
 def write_overview(folder: Path, names: Sequence[str]) -> Path:

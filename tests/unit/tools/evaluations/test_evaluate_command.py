@@ -115,6 +115,31 @@ def test_resume_makes_pages_of_other_source_or_models_anew(other, tmp_path, caps
     assert CALLS.count("first") == (2 if other else 1)
 
 
+def test_resume_makes_a_page_of_other_flags_anew(tmp_path, capsys):
+    """Two starts for a try, or a seed for debugging, passed for the evaluation that was asked for."""
+    first = ["evaluate", "first", "--report", str(tmp_path)]
+    main([*first, "--episodes", "2", "--seed", "5"])
+    main([*first, "--episodes", "2", "--resume"])
+    main([*first, "--resume"])
+    main([*first, "--resume", "--jobs", "1", "--json", "--store", str(tmp_path / "other")])  # changes no figure
+    assert CALLS == ["first"] * 3
+
+
+def test_what_is_skipped_has_the_exit_code_that_it_had(tmp_path, capsys):
+    words = ["evaluate", "first", "second", "--report", str(tmp_path)]
+    assert main(words) == 1
+    assert main([*words, "--resume"]) == 1
+    assert CALLS == ["first", "second"]
+
+
+def test_an_evaluation_that_cannot_run_any_more_is_not_skipped_for_its_former_page(tmp_path, capsys, monkeypatch):
+    words = ["evaluate", "all", "--report", str(tmp_path), "--domain", "arm"]
+    assert main(words) == 1
+    monkeypatch.setattr(sys.modules["stand_in.second"], "run", lambda _: CALLS.append("second") or refuse())
+    assert main(words) == main([*words, "--resume"]) == 2
+    assert CALLS == ["second"] * 3
+
+
 def test_a_page_that_was_broken_off_is_made_again(tmp_path, capsys):
     main(["evaluate", "first", "--report", str(tmp_path)])
     (tmp_path / "first.json").unlink()
