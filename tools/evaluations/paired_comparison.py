@@ -131,6 +131,11 @@ def by_unit(values: Array, units: Units | None) -> Array:
     return np.array([values[names == name].mean() for name in dict.fromkeys(units)])
 
 
+def sums_by_unit(values: Array, units: Units | None) -> Array:
+    """Sum of each unit's values, as `by_unit`: of a total, a unit with more of them has a larger share."""
+    return values if units is None else by_unit(values, units) * [units.count(name) for name in dict.fromkeys(units)]
+
+
 def mean_interval(values: Array) -> tuple[float, float]:
     """95 % t-interval of the mean of independent values, shape (n,); infinite where these tell nothing.
 

@@ -17,12 +17,12 @@ from tailor.tools.evaluations.paired_comparison import (
     Comparison,
     Difference,
     Units,
-    by_unit,
     compare,
     compare_means,
     compare_shares,
     p_shown,
     ratio_interval,
+    sums_by_unit,
     without_intervals,
 )
 
@@ -79,7 +79,7 @@ def _times(pairs: Sequence[Pair], units: Units | None) -> Comparison:
 def _of_total(pairs: Sequence[Pair], units: Units | None) -> dict[str, Any]:
     """Seconds gained as a share of all seconds of the baseline, in percent; the interval is a bootstrap over units."""
     greedy_s, gained_s = (
-        by_unit(np.array(seconds), units)
+        sums_by_unit(np.array(seconds), units)
         for seconds in ([a.duration_s for a, _ in pairs], [a.duration_s - b.duration_s for a, b in pairs])
     )
     known = len(greedy_s) > 1

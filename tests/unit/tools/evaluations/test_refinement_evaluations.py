@@ -437,6 +437,18 @@ def test_the_gain_of_the_total_is_that_of_the_sums_with_an_interval_over_starts(
     assert "total_ci95" not in columns({**pairs, ("b", 1): pairs["a", 1]}, "scenario")
 
 
+def test_of_the_total_a_scenario_of_which_some_starts_failed_has_its_own_share():
+    """The mean of a scenario with half as many pairs counted as much: 2 % of the total instead of 5."""
+    faster, as_fast, failed = (
+        tuple(replace(DONE, duration_s=s, achieved=s < 99) for s in pair) for pair in ((10, 9), (20, 20), (10, 99))
+    )
+    pairs = {("a", k): faster for k in range(8)} | {("b", k): as_fast if k < 2 else failed for k in range(8)}
+    pairs |= {("c", k): as_fast if k < 2 else failed for k in range(8)}
+    row = columns(pairs, "scenario")
+    assert (row["n"], row["units"]) == (12, 3)
+    assert row["total_pct"] == pytest.approx(100 * 8 / (8 * 10 + 4 * 20))
+
+
 def test_a_set_of_models_states_its_first_start(monkeypatch, capsys):
     asked = []
 
