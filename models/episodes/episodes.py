@@ -49,7 +49,8 @@ class Episode:
       work_j: Work of the drives from each tick to the next in joules, shape (t,); None if not recorded.
       on_policy: Whether an optimiser chose the arguments.
       calibrates: Whether models of duration and energy do not learn from it, which chose it: it corrects intervals.
-      in_context: Whether it was decided beside objects of its `ActionContext`, of which the arguments know nothing.
+      in_context: Whether it was decided, or gathered, beside objects of its `ActionContext`, of which the arguments of
+        durations know nothing.
       selected: Whether it was selected for what a model did not know: it is learned from, but judges no intervals.
     """
 

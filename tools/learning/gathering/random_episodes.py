@@ -72,7 +72,8 @@ def run_one(spec: DataSetSpec, domain: Domain, body: Any, number: int) -> Episod
     rng = spec.rng(number)
     arguments = draw(spec, domain, rng)
     run = action_run.run_action(body, domain, spec.action, arguments, rng)
-    return Episode(number, arguments, run.ticks, run.duration_s, run.success, run.failure, run.done, run.work_j)
+    ended = run.duration_s, run.success, run.failure, run.done, run.work_j
+    return Episode(number, arguments, run.ticks, *ended, in_context=spec.beside)
 
 
 def run_episodes(spec: DataSetSpec, domain: Domain, body: Any, runs: Sequence[int]) -> tuple[list[Episode], float]:
