@@ -64,16 +64,18 @@ def _fastest_choice(body: PowerCubeBody, leg: Leg) -> Point:
 
 
 def _best(body: PowerCubeBody, leg: Leg, choices: Sequence[Point]) -> Point:
-    """The fastest choice; of several that took the same number of periods the middle one."""
+    """The fastest choice; of several that took the same number of periods the middle one. The first if all failed."""
     least, tied = Durations(), list[Point]()
     for choice in choices:  # with a fast one first others end early
         durations = _durations(body, leg, choice, least)
+        if not np.isfinite(durations).all():
+            continue
         if sum(durations) < sum(least) - 1e-6 or not least:
             least, tied = durations, []
         if sum(durations) < sum(least) + 1e-6:
             tied.append(choice)
-    middle = np.mean(tied, axis=0)
-    return min(tied, key=lambda choice: float(np.linalg.norm(middle - choice)))
+    middle = np.mean(tied or choices[:1], axis=0)
+    return min(tied or choices[:1], key=lambda choice: float(np.linalg.norm(middle - choice)))
 
 
 def _durations(body: PowerCubeBody, leg: Leg, choice: Point, least: Durations) -> Durations:

@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from tailor.executive.domains.arm.action_library import REACH
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.domains.arm.letters import font
 from tailor.simnodes.powercube.body import PowerCubeBody
-from tailor.tools.evaluations.arm import letter_figures, letters
+from tailor.tools.evaluations.arm import letter_figures, letters, perfect_greedy
 from tailor.tools.evaluations.arm.letter_figures import ORACLES, Figures
 from tailor.tools.evaluations.arm.perfect_greedy import Leg, _best, _durations
 from tailor.tools.evaluations.arm.perfect_reach import PerfectReach
@@ -100,6 +101,19 @@ def test_perfect_greedy_is_at_least_as_fast_to_the_first_waypoint_as_stopping_th
     chosen = _best(body, leg, [(0.0, 0.0), (0.6, 0.3), (-0.6, -0.3)])
     assert chosen == (0.6, 0.3)
     assert sum(_durations(body, leg, chosen, [])) < sum(_durations(body, leg, (0.0, 0.0), []))
+
+
+@pytest.mark.parametrize(("succeeds", "expected"), [(0.2, (0.2, 0.0)), (0.9, (-0.1, 0.0))])
+def test_perfect_greedy_leaves_out_a_choice_that_failed(succeeds, expected, monkeypatch):
+    """Where the first one did, a limit without end for the others ended the evaluation in a traceback."""
+
+    def ran(body, domain, action, arguments, rng, *, limit_s):
+        assert math.isfinite(limit_s)
+        return SimpleNamespace(success=arguments[5] >= succeeds, duration_s=1.0)
+
+    monkeypatch.setattr(perfect_greedy, "run_action", ran)
+    leg = Leg((0.0, 0.0, 0.0, 0.0), (0.3, 0.2), 0.5, (1.0, 1.0), (7, 0))
+    assert _best(None, leg, [(-0.1, 0.0), (0.2, 0.0)]) == expected
 
 
 def test_no_two_letters_have_the_same_start():
