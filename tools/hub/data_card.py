@@ -16,7 +16,7 @@ COLUMNS = (  # beside the arguments; as tailor.models.episodes.episodes writes t
     ("success", "", "whether the action achieved its effect"),
     ("finished", "", "whether its controller finished"),
     ("failure", "", "kind of failure, or empty"),
-    ("in_context", "", "whether it was decided beside objects of the action's context"),
+    ("in_context", "", "whether it was decided, or gathered, beside objects of the action's context"),
 )
 SIZES = (("n<1K", 10**3), ("1K<n<10K", 10**4), ("10K<n<100K", 10**5), ("100K<n<1M", 10**6), ("1M<n<10M", 10**7))
 
