@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning.pddl.language import Literal
@@ -15,9 +16,8 @@ from tailor.schemas.errors import UsageError
 MAX_CHARACTERS = 1_000_000  # a plan of a thousand steps has a tenth of that
 MAX_LINES = 20_000
 MAX_STEPS = 200  # as many as our own plans may have
-MAX_DIGITS = 24  # of a whole number; bounds of the longest plan in nanoseconds have 21
-MAX_TIME_S = 1e12  # 200 steps of the longest duration take 2e11
-MAX_DECIMALS = 12  # that a tick is taken from
+MAX_DIGITS = 12  # of a number; a plan of a thousand years in ticks has as many
+MAX_BOUND_DIGITS = 19  # of a bound in nanoseconds, which takes as long as MAX_DIGITS of ticks
 _NAME = r"[^\s()]+"
 _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
 _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
@@ -109,7 +109,7 @@ def _read_line(line: str, draft: _Draft) -> None:
     elif draft.part == "bindings":
         draft.bindings.append(line)
     elif draft.part == "orderings":
-        draft.bounds.append(tuple(None if word == "inf" else _whole(word) for word in stripped.split()))
+        draft.bounds.append(tuple(_bound(word) for word in stripped.split()))
     else:
         _read_step(stripped, draft)
 
@@ -140,8 +140,12 @@ def _enter(action: Fact, start: float, duration: str | None, draft: _Draft) -> N
     draft.plain.append(Step(number, action, start, 1.0 if duration is None else _number(duration)))
 
 
-def _whole(text: str) -> int:
-    _check_length(text)
+def _bound(text: str) -> int | None:
+    return None if text == "inf" else _whole(text, MAX_BOUND_DIGITS)
+
+
+def _whole(text: str, most: int = MAX_DIGITS) -> int:
+    _check_length(text, most)
     if not _INTEGER.fullmatch(text):
         raise ValueError(f"expected a whole number, found '{text[:60]}'")
     return int(text)
@@ -149,7 +153,7 @@ def _whole(text: str) -> int:
 
 def _number(text: str) -> float:
     _check_length(text)
-    if not _DECIMAL.fullmatch(text) or not 0 <= float(text) < MAX_TIME_S:
+    if not _DECIMAL.fullmatch(text) or not 0 <= float(text) < 10**MAX_DIGITS:
         raise ValueError(f"expected a time, found '{text[:60]}'")
     return float(text)
 
@@ -161,9 +165,9 @@ def _tick(text: str) -> float:
     return tick_s
 
 
-def _check_length(text: str) -> None:
-    if len(text.partition(".")[0].lstrip("-")) > MAX_DIGITS:
-        raise ValueError(f"a number of more than {MAX_DIGITS} digits: {text[:20]}...")
+def _check_length(text: str, most: int = MAX_DIGITS) -> None:
+    if len(text.partition(".")[0].lstrip("-")) > most:
+        raise ValueError(f"a number of more than {most} digits: {text[:20]}...")
 
 
 def _facts(text: str) -> list[Fact]:
@@ -189,7 +193,7 @@ def _from_plain(draft: _Draft) -> Plan:
     if len(draft.instant) == len(ordered):
         return Plan(draft.problem, (), tuple(ordered))
     steps = tuple(replace(step, duration=0.0) if step.id in draft.instant else step for step in ordered)
-    tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DECIMALS))
+    tick_s = min(DEFAULT_TICK_S, 10.0 ** -min(draft.decimals, MAX_DIGITS))
     return Plan(draft.problem, (), steps, durative=True, tick_s=tick_s)
 
 
@@ -215,6 +219,7 @@ def _from_links(draft: _Draft) -> Plan:
 
 def _durative(draft: _Draft) -> Plan:
     tick_s = exact(draft.tick_s)
+    _check_bounds(draft, 10**MAX_DIGITS * exact(DEFAULT_TICK_S) / tick_s)
     steps = []
     for number, action in draft.actions.items():
         start, end = draft.bounds[2 * number - 1][0], draft.bounds[2 * number][0]
@@ -229,6 +234,12 @@ def _durative(draft: _Draft) -> Plan:
             if i != j and bound is not None and bound <= 0:
                 pairs.append((i, j))
     return _plan(draft, tuple(steps), tuple(pairs))
+
+
+def _check_bounds(draft: _Draft, most: Fraction) -> None:
+    for bound in (bound for row in draft.bounds for bound in row if bound is not None):
+        if abs(bound) >= most:
+            raise PlanTextError(f"plan text: a bound of too many digits for ticks of {draft.tick_s:g} s: {bound}")
 
 
 def _plan(draft: _Draft, steps: tuple[Step, ...], orderings: tuple[tuple[int, int], ...]) -> Plan:
