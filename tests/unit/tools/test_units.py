@@ -4,7 +4,6 @@ import argparse
 import getpass
 import importlib
 import inspect
-import resource
 import shlex
 import shutil
 import subprocess
@@ -21,6 +20,7 @@ from tailor.tools.launch.hosting import GATEWAY_SILENCE_NS
 from tailor.tools.launch.processes import EXECUTIVE_SILENCE_NS, RECORDER_SILENCE_NS, SIM_SILENCE_NS
 from tailor.tools.launch.units.unit_text import command_line
 from tailor.tools.main import COMMANDS, main
+from tests.support.injection.small_disk import small_disk
 
 SERVICES = {"bus": "bus", "driver": "sim", "executive": "executive", "recorder": "record"}  # part -> command
 
@@ -228,12 +228,8 @@ def test_a_full_disk_takes_no_unit_that_was_there(tmp_path, capsys):
     assert main(["units", str(tmp_path), "--user", "robot"]) == 0
     before = {file: file.read_text() for file in tmp_path.iterdir()}
     capsys.readouterr()
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (500, hard))
-    try:
+    with small_disk(500):
         assert main(["units", str(tmp_path), "--user", "robot", "--force"]) == 2
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     line = capsys.readouterr().err.splitlines()[-1]
     assert line == f"tailor units: {tmp_path}/tailor-bus.service: File too large, expected a file that can be written"
     assert {file: file.read_text() for file in tmp_path.iterdir()} == before

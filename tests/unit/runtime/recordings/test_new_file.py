@@ -1,7 +1,6 @@
 """Files that tools make from recordings are whole or absent, so that a second attempt finds their name free."""
 
 import errno
-import resource
 
 import pytest
 
@@ -13,6 +12,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.commands.look import verify
 from tailor.tools.main import main
 from tailor.tools.scenes.recorded_scenes import add_scenes
+from tests.support.injection.small_disk import small_disk
 from tests.unit.runtime.recordings.test_hostile_recordings import GOLDEN
 from tests.unit.runtime.recordings.test_mcap_writer import write_tape
 
@@ -123,11 +123,7 @@ def test_a_file_that_cannot_be_made_is_refused(tmp_path, place, reason):
 
 
 def test_a_file_for_which_there_is_no_room_is_refused_and_removed(tmp_path):
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
-    try:
-        with pytest.raises(UsageError, match=r"b\.mcap: File too large, expected a file that can be written"):
-            check_new_file(tmp_path / "b.mcap")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    problem = r"b\.mcap: File too large, expected a file that can be written"
+    with small_disk(1000), pytest.raises(UsageError, match=problem):
+        check_new_file(tmp_path / "b.mcap")
     assert list(tmp_path.iterdir()) == []

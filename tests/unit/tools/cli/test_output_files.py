@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
-import resource
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 from unittest.mock import MagicMock
 
@@ -29,20 +27,10 @@ from tailor.tools.figures.recorded_track import recorded_track
 from tailor.tools.main import main
 from tailor.tools.writing.writing_track import WritingTrack
 from tests.support.injection.signals import heeded_signals
+from tests.support.injection.small_disk import small_disk
 
 GOLDEN = str(Path(__file__).parents[3] / "data" / "golden" / "soccer-approach.mcap")
 CHOICES = GOLDEN.replace("approach", "approach-dribble")
-
-
-@contextmanager
-def small_disk(limit):
-    """No file grows beyond the limit: writing fails as on a full disk, in whatever library."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
 """Keys of a deployment: who signs, what they are valid for, and who may read them. tests/faults tries them live."""
 
 import json
-import resource
 import stat
-from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from threading import Thread
 
@@ -16,6 +14,7 @@ from tailor.schemas.errors import UsageError
 from tailor.tools.keys.authority import AUTHORITY_KEY, Authority
 from tailor.tools.keys.registry import check_name, only_writer, registered_roles, write_role
 from tailor.tools.main import main
+from tests.support.injection.small_disk import small_disk
 
 NOW = datetime(2026, 11, 22, tzinfo=UTC)
 
@@ -25,17 +24,6 @@ def keys(tmp_path):
     folder = tmp_path / "keys"
     Authority.of(folder, NOW, 30).issue(folder / "driving", "driving", ["10.0.0.7", "robot.local"], NOW, 10)
     return folder
-
-
-@contextmanager
-def full_disk(limit):
-    """No file grows beyond so many bytes."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def everything_in(folder):
@@ -257,7 +245,7 @@ def test_a_file_is_no_folder_of_keys(tmp_path, capsys):
 @pytest.mark.parametrize("limit", [100, 300], ids=["certificate", "private key"])
 def test_a_full_disk_leaves_no_half_of_an_authority_which_would_bar_all_keys(tmp_path, capsys, limit):
     words = ["keys", "new", "router", "--host", "robot.local", "--keys", str(tmp_path / "keys")]
-    with full_disk(limit):
+    with small_disk(limit):
         assert main(words) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"tailor keys: {tmp_path / 'keys'}")
@@ -272,7 +260,7 @@ def test_a_full_disk_costs_no_name_and_leaves_no_half_of_a_key(keys, capsys, lim
     write_role(str(keys), "driving", "driver")
     before = everything_in(keys)
     words = ["keys", "new", "bridge", "--role", "driver", "--for", "tls/robot.local:7448", "--keys", str(keys)]
-    with full_disk(limit):
+    with small_disk(limit):
         assert main(words) == 2
     assert capsys.readouterr().err == f"tailor keys: {keys}: File too large, expected space for what is written there\n"
     assert everything_in(keys) == before
@@ -286,7 +274,7 @@ def test_a_full_disk_costs_no_name_and_leaves_no_half_of_a_key(keys, capsys, lim
 def test_a_full_disk_revokes_nothing_and_is_named(keys, capsys):
     write_role(str(keys), "driving", "driver")
     before = everything_in(keys)
-    with full_disk(10):
+    with small_disk(10):
         assert main(["keys", "revoke", "driving", "--keys", str(keys)]) == 2
     expected = f"tailor keys: {keys / 'roles.json'}: File too large, expected a file that can be written\n"
     assert capsys.readouterr().err == expected
