@@ -10,7 +10,7 @@ from typing import Any
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.output_files import check_writable
 from tailor.tools.evaluations.catalogue import ALL, EVALUATIONS, Chosen, chosen_of, domains_of, names_and_flags
-from tailor.tools.evaluations.pages.finished import asked_of, exit_code_of, forget, note
+from tailor.tools.evaluations.pages.finished import exit_code_of, flags_of, forget, note
 from tailor.tools.evaluations.pages.overview import write_overview
 from tailor.tools.evaluations.seeds import seeds_of
 from tailor.tools.launch.checks.package_check import check_package
@@ -100,16 +100,16 @@ def _run_all(chosen: list[Chosen], resume: bool, everything: bool) -> int:
 def _known(name: str, module: Any, settings: argparse.Namespace) -> int | None:
     """Exit code of an evaluation whose page is in the report's folder, of the source, models and flags of now."""
     domain = settings.domain or domains_of(module)[0]
-    return exit_code_of(settings.report, name, asked_of(settings), seeds_of(domain, settings).provenance)
+    return exit_code_of(settings.report, name, flags_of(settings), seeds_of(domain, settings).provenance)
 
 
 def _run_noted(name: str, module: Any, settings: argparse.Namespace, everything: bool) -> int:
     """Run one evaluation that writes a page; a later --resume skips it unless it was stopped or could not run."""
-    folder, asked = settings.report, asked_of(settings)  # before it runs: some fill in their defaults
+    folder, flags = settings.report, flags_of(settings)  # before it runs: some fill in their defaults
     forget(folder, name)
     code = _run_one(name, module, settings, everything)
     if code <= MISSED:
-        note(folder, name, asked, code)
+        note(folder, name, flags, code)
     write_overview(folder, list(EVALUATIONS))
     return code
 

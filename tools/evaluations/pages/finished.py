@@ -1,4 +1,4 @@
-"""Finished evaluations beside their pages: what each was asked and its exit code, so that a resumed call skips it."""
+"""Finished evaluations beside their pages: the flags of each and its exit code, so that a resumed call skips it."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ HASHES, SHA256 = ("source_sha256", "models_sha256"), re.compile("[0-9a-f]{64}")
 WITHOUT_EFFECT = ("jobs", "on", "json", "report", "store")  # flags that change no figure
 
 
-def asked_of(settings: argparse.Namespace) -> dict[str, Any]:
+def flags_of(settings: argparse.Namespace) -> dict[str, Any]:
     """The flags of an evaluation that its figures depend on, as JSON values."""
     kept = {key: value for key, value in vars(settings).items() if key not in WITHOUT_EFFECT}
     read: dict[str, Any] = json.loads(json.dumps(kept, default=str))
     return read
 
 
-def note(folder: Path, name: str, asked: Mapping[str, Any], exit_code: int) -> None:
+def note(folder: Path, name: str, flags: Mapping[str, Any], exit_code: int) -> None:
     """Note that an evaluation's page is complete; see `exit_code_of`."""
     with whole_output(_file(folder, name)) as whole:
-        whole.write_text(json.dumps({"asked": asked, "exit_code": exit_code}) + "\n", encoding="utf-8")
+        whole.write_text(json.dumps({"flags": flags, "exit_code": exit_code}) + "\n", encoding="utf-8")
 
 
 def forget(folder: Path, name: str) -> None:
@@ -34,13 +34,13 @@ def forget(folder: Path, name: str) -> None:
     _file(folder, name).unlink(missing_ok=True)
 
 
-def exit_code_of(folder: Path, name: str, asked: Mapping[str, Any], provenance: Mapping[str, Any]) -> int | None:
-    """Exit code of an evaluation whose page is there; None unless it was asked the same of the same.
+def exit_code_of(folder: Path, name: str, flags: Mapping[str, Any], provenance: Mapping[str, Any]) -> int | None:
+    """Exit code of an evaluation whose page is there; None unless flags, source and models are the same.
 
     Args:
       folder: Of the pages.
       name: Of the evaluation.
-      asked: What it would be asked now; see `asked_of`.
+      flags: Those of now; see `flags_of`.
       provenance: Hashes of the source and the models of now, which count as far as the page states any.
     """
     if not page_is_there(folder, name) or not _file(folder, name).exists():
@@ -48,7 +48,7 @@ def exit_code_of(folder: Path, name: str, asked: Mapping[str, Any], provenance: 
     stated = json.loads((folder / f"{name}.json").read_text("utf-8")).get("provenance", {})
     noted = json.loads(_file(folder, name).read_text("utf-8"))
     same = all(stated[key] == provenance[key] for key in HASHES if SHA256.fullmatch(stated.get(key, "")))
-    return int(noted["exit_code"]) if same and noted["asked"] == asked else None
+    return int(noted["exit_code"]) if same and noted["flags"] == flags else None
 
 
 def _file(folder: Path, name: str) -> Path:
