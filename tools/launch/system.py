@@ -97,14 +97,17 @@ class _System:
         """Start the recorder, and the others once it is ready; supervise them once the robot is."""
         config, senders = self._config, self._senders
         for gateway in gateways(config.bus):
-            self._supervisor.start(gateway, time.monotonic_ns())
-        if config.record is not None and not self._start(record_process(config, senders)):
-            return self._not_started("recorder")
+            self._start(gateway)
+        if config.record is not None:
+            recorder = record_process(config, senders)
+            self._start(recorder)
+            if not self._is_ready(recorder.name):
+                return self._not_started("recorder")
         if config.scene:  # before the executive, so that it takes no time from its first ticks
-            self._supervisor.start(scene_process(config, senders), time.monotonic_ns())
+            self._start(scene_process(config, senders))
         robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
-        self._supervisor.start(robot, time.monotonic_ns())
-        self._supervisor.start(executive_process(config, senders), time.monotonic_ns())  # it loads meanwhile, and waits
+        self._start(robot)
+        self._start(executive_process(config, senders))  # it loads meanwhile, and waits
         if not self._is_ready(robot.name):
             failure = self._not_started("driver" if config.hardware else "simulator")
             if failure and self._supervisor.refused(robot.name):  # it has printed why: an extra is missing, say
@@ -112,10 +115,8 @@ class _System:
             return failure
         return self._supervise()
 
-    def _start(self, spec: ProcessSpec) -> bool:
-        """Start a process; see `_is_ready`."""
+    def _start(self, spec: ProcessSpec) -> None:
         self._supervisor.start(spec, time.monotonic_ns())
-        return self._is_ready(spec.name)
 
     def _is_ready(self, name: str) -> bool:
         """Wait for a process; False if it ends before it is ready, is not ready in time, or on a stop request."""
