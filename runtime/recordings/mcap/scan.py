@@ -33,6 +33,7 @@ DATA_END_BYTES = 4  # a checksum
 CHUNK_HEAD_BYTES = 45  # up to the end of the compression's name: opcode, 5 numbers of 8 or 4 bytes, length, name
 _START = re.compile(rb"\x06.{36}(?:\x04\0{3}zstd|\x03\0{3}lz4|\0{4})|" + re.escape(MAGIC), re.DOTALL)
 _FIRST = (b"\x06", MAGIC[:1])  # bytes of which _START begins with one
+MESSAGES, ATTACHMENTS = (Opcode.CHUNK, Opcode.MESSAGE), (Opcode.ATTACHMENT,)  # records with what a file is large by
 _KINDS: dict[int, Any] = {
     Opcode.HEADER: r.Header,
     Opcode.SCHEMA: r.Schema,
@@ -95,15 +96,14 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True, with_attach
             for opcode, data in end.declarations(file):
                 yield from _one(_KINDS[opcode].read, data, DamageReport())
             file.seek(len(MAGIC))
-            yield from _records(file, size, damage, (with_chunks, with_attachments), end)
+            skipped = frozenset(() if with_chunks else MESSAGES) | frozenset(() if with_attachments else ATTACHMENTS)
+            yield from _records(file, size, damage, skipped, end)
             damage.complete = end.start >= 0
     except OSError as error:
         raise UsageError(f"{path}: {error.strerror}, expected a recording") from error
 
 
-def _records(
-    file: IO[bytes], size: int, damage: DamageReport, wanted: tuple[bool, bool], end: FileEnd
-) -> Iterator[Any]:
+def _records(file: IO[bytes], size: int, damage: DamageReport, skipped: frozenset[int], end: FileEnd) -> Iterator[Any]:
     while True:
         start = file.tell()
         head = file.read(HEAD.size)
@@ -125,7 +125,7 @@ def _records(
                 return
             file.seek(_next_start(file, start + 1, size))  # past an index that is damaged, or of another recording
         else:
-            yield from _record(file, opcode, length, damage, wanted)
+            yield from _record(file, opcode, length, damage, skipped)
 
 
 def _is_record(opcode: int, length: int, left: int) -> bool:
@@ -134,17 +134,16 @@ def _is_record(opcode: int, length: int, left: int) -> bool:
     return possible and (opcode != Opcode.DATA_END or length == DATA_END_BYTES)
 
 
-def _record(
-    file: IO[bytes], opcode: int, length: int, damage: DamageReport, wanted: tuple[bool, bool]
-) -> Iterator[Any]:
-    with_chunks, with_attachments = wanted
-    if opcode == Opcode.CHUNK and with_chunks:
+def _record(file: IO[bytes], opcode: int, length: int, damage: DamageReport, skipped: frozenset[int]) -> Iterator[Any]:
+    if opcode in skipped:
+        file.seek(length, 1)
+    elif opcode == Opcode.CHUNK:
         yield from _chunk(file.read(length), damage)
-    elif opcode == Opcode.MESSAGE and with_chunks:
+    elif opcode == Opcode.MESSAGE:
         yield from _one(partial(r.Message.read, length=length), file.read(length), damage)
-    elif opcode == Opcode.ATTACHMENT and with_attachments:
+    elif opcode == Opcode.ATTACHMENT:
         yield from _one(partial(_attachment, data := file.read(length)), data, damage)
-    elif opcode in _KINDS and opcode != Opcode.CHUNK:
+    elif opcode in _KINDS:
         yield from _one(_KINDS[opcode].read, file.read(length), damage)
     else:
         file.seek(length, 1)
