@@ -1,4 +1,4 @@
-"""Source files that determine a robot's episodes: controllers, belief filters, body, sampler.
+"""Source files that determine a robot's episodes: controllers, belief filters, body, sampler, measures of its world.
 
 A model is true of the source that its episodes were simulated with. They are found by following imports, without
 importing anything.
@@ -13,16 +13,17 @@ from pathlib import Path
 
 from tailor.schemas.installed import spec_of
 from tailor.schemas.installed.source_text import content_sha256
+from tailor.schemas.packages.spec import DomainSpec
 
 OURS = "tailor"
 RUNS_ACTIONS = "tailor.tools.lockstep.action_run"
-DECLARATIONS = ("tailor.schemas.", "tailor.executive.interfaces.")  # types without behaviour of their own
+DECLARATIONS = ("tailor.schemas.", "tailor.executive.interfaces.")  # types without behaviour, unless data lie beside
 BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")  # fields with the statements of a statement
-DATA = (".toml", ".xml")  # beside the body: axes and limits of its driver, its scene
+DATA = (".toml", ".xml")  # beside the body: axes and limits of its driver, its scene; in schemas: measures of furniture
 
 
 def episode_files(domain: str) -> dict[str, str]:
-    """Files that determine a robot's episodes: all that domain, body and sampler import, and data beside the body.
+    """Files that determine a robot's episodes, of a domain by name.
 
     Returns:
       SHA-256 by path inside the package; "executive/actions/reach.py" for files of Tailor.
@@ -30,14 +31,24 @@ def episode_files(domain: str) -> dict[str, str]:
     Raises:
       UsageError: There is no such domain.
     """
-    spec = spec_of(domain)
+    return {shown: content_sha256(path) for shown, path in sorted(episode_paths(spec_of(domain)).items())}
+
+
+def episode_paths(spec: DomainSpec) -> dict[str, Path]:
+    """All that domain, body and sampler import, with the data beside the body and beside measures that both sides use.
+
+    Returns:
+      File by path inside the package.
+    """
     starts = [written.partition(":")[0] for written in (spec.domain, spec.body, spec.sampler) if written]
-    files = {_shown(module, path): path for module, path in _imported([*starts, RUNS_ACTIONS]).items()}
-    body = _file_of(spec.body.partition(":")[0]) if spec.body else None
-    if body is not None:
-        folder = _shown(spec.body.partition(":")[0], body).rpartition("/")[0]
-        files |= {f"{folder}/{path.name}": path for suffix in DATA for path in body.parent.glob(f"*{suffix}")}
-    return {shown: content_sha256(path) for shown, path in sorted(files.items())}
+    found = _imported([*starts, RUNS_ACTIONS])
+    body = spec.body.partition(":")[0]
+    with_data = {module for module in found if module == body or module.startswith(DECLARATIONS)}
+    files = {_shown(module, path): path for module, path in found.items()}
+    for module in with_data:
+        folder = _shown(module, found[module]).rpartition("/")[0]
+        files |= {f"{folder}/{path.name}": path for path in _data_beside(found[module])}
+    return files
 
 
 def _imported(starts: Iterable[str]) -> dict[str, Path]:
@@ -47,11 +58,19 @@ def _imported(starts: Iterable[str]) -> dict[str, Path]:
     waiting = list(starts)
     while waiting:
         module = waiting.pop()
-        path = None if module in found or module.startswith(DECLARATIONS) else _file_of(module)
-        if path is not None and module.partition(".")[0] in packages:
+        path = None if module in found else _file_of(module)
+        if path is not None and module.partition(".")[0] in packages and not _declares(module, path):
             found[module] = path
             waiting.extend(_imports(module, path))
     return found
+
+
+def _declares(module: str, path: Path) -> bool:
+    return module.startswith(DECLARATIONS) and not _data_beside(path)
+
+
+def _data_beside(path: Path) -> list[Path]:
+    return [beside for suffix in DATA for beside in path.parent.glob(f"*{suffix}")]
 
 
 def _imports(module: str, path: Path) -> Iterator[str]:

@@ -9,17 +9,15 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tailor.schemas.installed import file, spec_of
-from tailor.schemas.installed.episode_files import episode_files
+from tailor.schemas.installed.episode_files import episode_files, episode_paths
 from tailor.schemas.installed.source_text import content_sha256, content_text
 from tailor.schemas.packages.spec import DomainSpec
 
 ROOT = Path(__file__).resolve().parents[2]
 OURS = "tailor"  # whose scenarios do not count: seeds of all evaluations are derived from these hashes
 DATA = (".pddl", ".toml", ".xml")  # beside code: problems, scenarios, drivers, scenes
-CONTROL = ("executive/actions/*", "executive/belief/*", "simnodes/body.py", "tools/lockstep/action_*.py")
 REASONING = tuple(f"executive/{room}/**/*" for room in ("core", "deliberation", "interfaces", "planning", "refinement"))
-WHOLE = (
-    *CONTROL,
+WHOLE = (  # beside what determines the episodes
     *REASONING,
     "simnodes/*",
     "models/features/**/*",
@@ -62,8 +60,10 @@ def learning_sha256() -> str:
 
 def _sha256(ours: Iterable[str], spec: DomainSpec) -> str:
     digest = hashlib.sha256()
-    generic = (path for pattern in ours for path in ROOT.glob(pattern))
-    for name, path in sorted((_name(path), path) for path in {*filter(_counts, generic), *_of_package(spec)}):
+    generic = filter(_counts, (path for pattern in ours for path in ROOT.glob(pattern)))
+    of_episodes = (path.resolve() for path in episode_paths(spec).values())
+    files = {*generic, *_of_package(spec), *of_episodes}
+    for name, path in sorted((_name(path), path) for path in files):
         digest.update(f"{name}\0{content_text(path)}\0".encode())
     return digest.hexdigest()
 
