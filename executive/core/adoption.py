@@ -1,4 +1,8 @@
-"""Adoption of a decision: at once between actions; while one runs only if it is worth a change of course."""
+"""What becomes of a deliberation's result.
+
+A decision is adopted at once between actions, while one runs only if it is worth a change of course. A failure ends the
+task once it has been doubted for a while: a percept that is wrong once ends none.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,11 @@ from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.state import State, Task
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision
+from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.executive.refinement.rolling_start import begins_too_fast
+
+DOUBT_NS = 500_000_000  # for which there has to be no way: two pictures or more of a slow camera, and five ticks
+OF_THE_BELIEF = {Reason.UNSOLVABLE, Reason.NOT_INSTANTIABLE, Reason.NO_SUBGOAL, Reason.NO_VALID_CHOICE}
 
 
 def adopted(context: Context, state: State, decision: Decision, decided: bool) -> State:
@@ -36,7 +44,23 @@ def adopted(context: Context, state: State, decision: Decision, decided: bool) -
 
 
 def _with_decision(task: Task, decision: Decision, new_plan: bool) -> Task:
-    return replace(task, decision=decision, plan=decision.plan, done=frozenset() if new_plan else task.done)
+    done = frozenset() if new_plan else task.done
+    return replace(task, decision=decision, plan=decision.plan, done=done, doubted_until_ns=0)
+
+
+def failed(context: Context, state: State, cause: Cause | None) -> State:
+    """Without a decision a running action continues while its plan holds; without an action the task has failed.
+
+    It fails at once for causes that no other belief changes, such as a limit of the search.
+    """
+    task = state.task
+    if task.running is not None:
+        return halted_if_lost(context, state)
+    if cause is not None and cause.reason in OF_THE_BELIEF:
+        until_ns = task.doubted_until_ns or state.now_ns + DOUBT_NS
+        if state.now_ns < until_ns:
+            return replace(state, task=replace(task, doubted_until_ns=until_ns))
+    return replace(state, task=replace(task, active=False, result=Result.FAILED, result_cause=cause, decision=None))
 
 
 def _redirected_if_better(context: Context, state: State, running: Running, old: Decision, new: Decision) -> State:

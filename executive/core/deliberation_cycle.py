@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from tailor.executive import planning
-from tailor.executive.core.adoption import adopted
+from tailor.executive.core.adoption import adopted, failed
 from tailor.executive.core.course import (
     HALT_COST_S,
     SEARCH_TICKS,
@@ -24,7 +24,8 @@ from tailor.executive.deliberation.plan_reuse import reuse
 from tailor.executive.deliberation.plan_source import PlanSource, current_problem, request_for
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.domain_results import anchored
-from tailor.executive.interfaces.reasons import Cause, Result
+from tailor.executive.interfaces.reasons import Reason, Result
+from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import PlanAnswer, PlanRequest
 
 
@@ -57,7 +58,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     deliberation.advance(budget)
     state = _with_planner_failure(state, deliberation)
     if deliberation.stage == "failed":
-        return _with_failure(context, state, deliberation.failure)
+        return failed(context, state, deliberation.failure)
     if deliberation.nothing_to_do():
         if not _holds_still(context, state, deliberation):
             return replace(state, deliberation=None)
@@ -80,7 +81,7 @@ def _holds_still(context: Context, state: State, deliberation: Deliberation) -> 
 
 
 def _with_deliberation(context: Context, state: State) -> State:
-    """A new deliberation if none is ongoing and there is no valid decision."""
+    """A new deliberation if none is ongoing and there is no valid decision, nor a failure in doubt."""
     task, ongoing = state.task, state.deliberation
     if ongoing is not None and ongoing.stage in ("decided", "failed"):
         ongoing = None
@@ -94,12 +95,22 @@ def _with_deliberation(context: Context, state: State) -> State:
     elif not idle or ongoing is not None:
         return state
     facts = anchored(context.domain, state.belief, context.scenario, task.facts)
+    if idle and _stays_failed(state, facts):
+        return state
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
     known = state.next_choice if idle else None
     start = known.values() if known is not None and known.decision.plan is task.plan else {}
     deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
     return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
+
+
+def _stays_failed(state: State, facts: frozenset[Fact]) -> bool:
+    """Whether the last deliberation need not be repeated: at once it would fail again, without a plan also later."""
+    task, last = state.task, state.deliberation
+    if last is None or last.failure is None or facts != task.facts:
+        return False
+    return state.now_ns < task.doubted_until_ns or last.failure.reason is Reason.UNSOLVABLE
 
 
 def _on_its_way(context: Context, state: State, decision: Decision, ongoing: Deliberation | None) -> tuple[State, bool]:
@@ -148,11 +159,3 @@ def _with_planner_failure(state: State, deliberation: Deliberation) -> State:
     if state.task.external_failed or not any(result.status == "failed" for result in deliberation.plan_results):
         return state
     return replace(state, task=replace(state.task, external_failed=True))
-
-
-def _with_failure(context: Context, state: State, cause: Cause | None) -> State:
-    """Without a decision a running action continues while its plan holds; without an action the task has failed."""
-    if state.task.running is not None:
-        return halted_if_lost(context, state)
-    task = replace(state.task, active=False, result=Result.FAILED, result_cause=cause, decision=None)
-    return replace(state, task=task)

@@ -73,6 +73,7 @@ class Task:
     running: Running | None = None
     decision: Decision | None = None  # of the last deliberation
     external_failed: bool = False  # the external planner gets no more requests for this goal
+    doubted_until_ns: int = 0  # by then the task fails if no way is found; 0: there was one
 
     @property
     def result_text(self) -> str:
@@ -128,7 +129,7 @@ class State:
 def undecided(state: State) -> State:
     """The state with its goal only: what comes next is planned and decided from where the robot stands then."""
     finished = state.task.finished + (state.task.running is not None)
-    task = replace(state.task, running=None, decision=None, plan=None, finished=finished)
+    task = replace(state.task, running=None, decision=None, plan=None, finished=finished, doubted_until_ns=0)
     return replace(state, task=task, deliberation=None, preparation=None, next_choice=None)
 
 

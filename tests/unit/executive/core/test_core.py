@@ -539,7 +539,7 @@ def test_action_whose_support_is_gone_does_not_start():
     def world(n, given, x):
         return Inputs((odometry(n * TICK, x, n, CLOSED if n >= 2 else 0.0), driver(n * TICK)), given.goal)
 
-    run = list(drive(line_context(), world=world, ticks=6))
+    run = list(drive(line_context(), world=world, ticks=10))
     assert run[0][0].task.decision is not None
     assert all(state.task.running is None for state, _, _ in run)
     assert run[-1][0].task.result_cause.reason is Reason.UNSOLVABLE

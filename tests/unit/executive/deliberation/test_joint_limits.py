@@ -58,7 +58,7 @@ def after_decision(failure: float, **given: float):
     models = Models({"slide/duration": LineModel()}, {"slide/success": FastInSlowOut(failure)})
     context = replace(line_context(settings), domain=Line(), models=models)
     state = initial_state(context)
-    for n in range(1, 7):
+    for n in range(1, 13):
         goal = context.problem.goal_text if n == 1 else ""
         state, _ = step(context, state, n * TICK, inputs(n * TICK, 0.0, goal), CheckBudget(3000))
     return state.task

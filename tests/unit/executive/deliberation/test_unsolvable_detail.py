@@ -18,7 +18,7 @@ UNKNOWN = "(and (visited a) (place home))"  # nothing makes a place
 
 
 def cause_of(context, goal=UNKNOWN):
-    *_, (state, _, _) = drive(context, goal=goal, ticks=5)
+    *_, (state, _, _) = drive(context, goal=goal, ticks=10)
     return state.task.result_cause
 
 
