@@ -55,6 +55,17 @@ def mapped_label(scenario: Scenario, cup: str) -> str | None:
     return next((label for label, place in spots(scenario).items() if tuple(place) == (table, slot)), None)
 
 
+def open_stand(scenario: Scenario, label: str) -> Mapping[str, float]:
+    """Where the robot stands at a place without a spot.
+
+    Raises:
+      Conflict: Nobody says where that is, e.g. the place from which the robot started: a goal may send it back there.
+    """
+    if label not in scenario.places:
+        raise Conflict(f"{label} has no stand")
+    return scenario.places[label]
+
+
 def spot_of(belief: KitchenBelief, scenario: Scenario, label: str) -> Spot:
     """The believed spot of a place without a cup.
 

@@ -62,7 +62,7 @@ def _stand(query: LabelQuery) -> Mapping[str, Interval]:
     if ("robot-at", query.label) in query.holds:
         return _exact(_robot(query.belief))
     if query.label not in places.spots(query.scenario):
-        return _exact(query.scenario.places[query.label])
+        return _exact(places.open_stand(query.scenario, query.label))
     cup = _cup(query)
     if cup:
         return places.stand_ranges(places.cup_spot(query.belief, query.scenario, query.label, cup)[0])

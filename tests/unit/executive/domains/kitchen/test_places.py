@@ -14,7 +14,7 @@ from tailor.executive.domains.kitchen import abstract_state, objects, places, pr
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.domains.kitchen.objects import Thing
 from tailor.executive.interfaces.budget import CheckBudget
-from tailor.executive.interfaces.domain import LabelQuery
+from tailor.executive.interfaces.domain import Conflict, LabelQuery
 from tailor.executive.refinement.instantiation import instantiate
 from tailor.schemas.kitchen.furniture import kitchen, on_table
 
@@ -95,6 +95,12 @@ def test_a_goal_for_the_arm_at_a_place_without_a_spot_fails_and_says_why(goal):
     task, domain = scenario(), domains.load("kitchen")
     failure = instantiate(planned(domain, task, goal), domain, believed(), task)
     assert failure.reason == "reach dock: dock has no spot for a cup"
+
+
+def test_nobody_knows_where_a_robot_started_that_has_left_there():
+    """A goal to go back there ended the executive, with a KeyError."""
+    with pytest.raises(Conflict, match="dock has no stand"):
+        query("x", "dock", believed(), achieved=(("robot-at", "dock"),))
 
 
 REMEMBERED = frozenset({("robot-at", "table1"), ("cup-at", "cup1", "table1"), ("hand-empty",), ("arm-home",)})
