@@ -21,6 +21,7 @@ def anchor(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact
     cups = tuple(_cups(belief, scenario, remembered))
     facts = {fact for fact in remembered if fact[0] not in OBSERVED} | set(cups)
     occupied = {fact[2] for fact in cups if fact[0] == "cup-at"}
+    occupied |= places.blocked(belief, scenario, {fact[1] for fact in cups})
     facts |= {("free", label) for label in places.spots(scenario) if label not in occupied}
     if not any(fact[0] == "holding" for fact in cups):
         facts.add(("hand-empty",))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from tailor.executive.belief.angles import difference, wrap
+from tailor.executive.domains.kitchen import objects
 from tailor.executive.domains.kitchen.belief import KitchenBelief
 from tailor.executive.domains.kitchen.known_places import mapped_cup, table_place
 from tailor.executive.domains.kitchen.objects import Thing
@@ -21,6 +22,7 @@ LATERAL_M = 0.12  # how far beside the spot the robot may stand
 FACING_RAD = 0.5  # how far it may look aside of the table
 SPOT_M = (0.03, 0.06)  # how far from its spot a cup may be put, along the table's direction and across
 ON_TOP_M = 0.06  # height above the table's top by which a cup may be misjudged
+BLOCKED_M = 0.15  # a cup so near a spot is knocked over by one that is put there; those of neighbouring slots are not
 UNSEEN_M = 0.2  # by which a table may be off the map: as far as it is displaced and turned, and as a cup is seen
 # Beyond the ranges of a stand the robot still counts as being there: more than what goToPose leaves, or it would be
 # sent again to where it has arrived.
@@ -142,8 +144,7 @@ def place_of(belief: KitchenBelief, scenario: Scenario, cup: Thing) -> str | Non
 
     Before its table is seen, a cup near it stands on it, and at the place that the map gives it.
     """
-    size = kitchen()
-    if cup.tilt > size.cup.tipped_rad or abs(cup.z - size.table.size[2] - size.cup.height / 2) > ON_TOP_M:
+    if cup.tilt > kitchen().cup.tipped_rad or not _is_high(cup):
         return None
     near = []
     for label, (name, _) in spots(scenario).items():
@@ -154,6 +155,22 @@ def place_of(belief: KitchenBelief, scenario: Scenario, cup: Thing) -> str | Non
             spot = spot_of(belief, scenario, label)
             near.append((math.hypot(cup.x - spot.x, cup.y - spot.y), label))
     return min(near)[1] if near else None
+
+
+def blocked(belief: KitchenBelief, scenario: Scenario, known: Collection[str]) -> set[str]:
+    """Places whose spots are taken by a cup, upright or not, that is none of the known ones, but is seen there."""
+    cups = [cup for cup in objects.cups(belief.things) if cup.name not in known and _is_high(cup)]
+    spots_by_label = {label: spot_of(belief, scenario, label) for label in spots(scenario)} if cups else {}
+    return {
+        label
+        for label, spot in spots_by_label.items()
+        if any(math.hypot(cup.x - spot.x, cup.y - spot.y) < BLOCKED_M for cup in cups)
+    }
+
+
+def _is_high(cup: Thing) -> bool:
+    """Whether it is as high as one on a table; one that lies there is a little lower."""
+    return abs(cup.z - kitchen().table.size[2] - kitchen().cup.height / 2) <= ON_TOP_M
 
 
 def _on_top(cup: Thing, table: Place, beside_m: float) -> bool:

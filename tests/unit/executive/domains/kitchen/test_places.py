@@ -123,6 +123,15 @@ def test_a_cup_on_the_floor_or_tipped_is_nowhere(lost):
     assert not any(fact[0] in ("cup-at", "holding") for fact in facts)
 
 
+@pytest.mark.parametrize(
+    ("other", "tilt", "y", "free"), [("cup2", 0.0, 0.2, False), ("cup1", 1.5, 0.2, False), ("cup2", 0.0, 0.0, True)]
+)
+def test_no_cup_is_put_on_one_that_is_none_of_the_task_or_has_tipped(other, tilt, y, free):
+    """It knocked it over."""
+    there = cup(*on_table(kitchen().tables["table2"], 0.23, y)[:2], tilt=tilt, name=other)
+    assert (("free", "table2") in anchored(believed(there, pose=STAND))) is free
+
+
 @pytest.mark.parametrize(("moved", "spots"), [((0.12, 0.12, 0.12), (0, 1)), ((-0.12, -0.22, -0.12), (0, 1))])
 def test_cups_on_a_table_that_is_not_seen_yet_are_where_the_map_has_them(moved, spots):
     """Not beside its outline on the map, at no place, nor both at one place: the task was given up as unsolvable."""
