@@ -23,7 +23,7 @@ def anchor(belief: KitchenBelief, scenario: Scenario, remembered: frozenset[Fact
     occupied = {fact[2] for fact in cups if fact[0] == "cup-at"}
     occupied |= places.blocked(belief, scenario, {fact[1] for fact in cups})
     facts |= {("free", label) for label in places.spots(scenario) if label not in occupied}
-    if not any(fact[0] == "holding" for fact in cups):
+    if not belief.held:
         facts.add(("hand-empty",))
     stand = _stand(belief, scenario, remembered, cups)
     facts |= {("open", label) for label in scenario.settings["open_places"]}

@@ -177,6 +177,12 @@ def test_a_cup_in_the_gripper_is_held():
     assert ("hand-empty",) not in facts
 
 
+def test_a_hand_with_a_cup_that_is_none_of_the_task_is_not_empty():
+    """The robot dropped it to grip the other one."""
+    facts = anchored(believed(cup(*on_table1()), pose=STAND, held="cup2"))
+    assert not facts & {("hand-empty",), ("holding", "cup2")}
+
+
 def test_a_robot_with_its_arm_out_may_not_drive():
     out = replace(believed(cup(*on_table1()), pose=STAND), angles=(0.0,) * len(robot.HOME))
     assert ("arm-home",) not in anchored(out)
