@@ -13,6 +13,7 @@ from tailor.schemas.messages.kitchen import ObjectPercept
 
 VARIANCES = (1e-8, 1.0)  # of a percept, whatever was received
 MOVED_SIGMAS, MOVED_M = 5.0, 0.04  # a percept farther off than both is not noise: the object was moved
+TURNED_RAD = 0.15  # nor is a direction that is off by more than this and as many sigmas: the object was turned
 LEAST_M2 = 1e-7  # variance below which no estimate falls, so that it can still follow
 CREDIBLE_M = 20.0
 PUT_DOWN_M = 0.05  # from the height at which a cup stands on a table
@@ -37,7 +38,8 @@ def see(things: tuple[Thing, ...], pose: Pose, percepts: tuple[ObjectPercept, ..
     known = {thing.name: thing for thing in things}
     for percept in percepts:
         if math.hypot(percept.x, percept.y) < CREDIBLE_M and percept.name in _names():
-            known[percept.name] = _fused(known.get(percept.name), _in_map(percept, pose, now_ns))
+            credible_rad = max(TURNED_RAD, MOVED_SIGMAS * math.sqrt(max(0.0, percept.var_phi)))
+            known[percept.name] = _fused(known.get(percept.name), _in_map(percept, pose, now_ns), credible_rad)
     return tuple(known[name] for name in sorted(known))
 
 
@@ -77,19 +79,20 @@ def _in_map(percept: ObjectPercept, pose: Pose, now_ns: int) -> Thing:
     return Thing(percept.name, x, y, percept.z, wrap(pose.phi + percept.phi), percept.tilt, var_xy, now_ns)
 
 
-def _fused(old: Thing | None, new: Thing) -> Thing:
+def _fused(old: Thing | None, new: Thing, credible_rad: float) -> Thing:
+    """An object as it is believed and seen; one that was moved is where it is seen, one turned points as it does."""
     if old is None:
         return new
     off = math.hypot(new.x - old.x, new.y - old.y)
     if off > max(MOVED_M, MOVED_SIGMAS * math.sqrt(old.var_xy + new.var_xy)) or abs(new.z - old.z) > MOVED_M:
         return new
-    gain = old.var_xy / (old.var_xy + new.var_xy)
+    gain, turned = old.var_xy / (old.var_xy + new.var_xy), wrap(new.phi - old.phi)
     return Thing(
         old.name,
         old.x + gain * (new.x - old.x),
         old.y + gain * (new.y - old.y),
         old.z + gain * (new.z - old.z),
-        wrap(old.phi + gain * wrap(new.phi - old.phi)),
+        new.phi if abs(turned) > credible_rad else wrap(old.phi + gain * turned),
         new.tilt,
         max(LEAST_M2, (1.0 - gain) * old.var_xy),
         new.seen_ns,

@@ -2,13 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tailor.executive import domains
+from tailor.executive.belief.angles import difference
+from tailor.executive.belief.planar_ekf import Pose
+from tailor.executive.domains.kitchen import objects
 from tailor.executive.domains.kitchen.objects import Thing
 from tailor.executive.interfaces.domain_results import kept_at, relocations
 from tailor.schemas.messages import PoseEstimate, Sample
-from tailor.schemas.messages.kitchen import GripperState
+from tailor.schemas.messages.kitchen import GripperState, ObjectPercept
 
 PERIOD_NS = 100_000_000
 
@@ -43,3 +47,18 @@ def test_a_cup_is_held_across_its_body_or_its_handle(width, force, expected):
     gripper = Sample("b21/gripper", GripperState(0, width, force), PERIOD_NS, 1)
     belief = kitchen.update(replace(unknown, things=(cup,)), PERIOD_NS, (gripper,), (0.0,) * len(kitchen.axes))
     assert belief.held == expected
+
+
+@pytest.mark.parametrize(("name", "z"), [("cup1", 0.77), ("table1", 0.72)])
+@pytest.mark.parametrize(("turned", "sigma"), [(0.3, 0.02), (-1.5, 0.05), (3.1, 0.05)])
+def test_an_object_that_was_turned_in_place_is_believed_so_at_once(name, z, turned, sigma):
+    """After 5 s of looking, a handle was believed more than half the turn beside where it pointed."""
+    rng, pose = np.random.default_rng(0), Pose(0.0, 0.0, 0.0, (1e-8, 0.0, 0.0, 1e-8, 0.0, 1e-8))
+    things, believed = (), []
+    for n in range(100):
+        x, y, error = 0.8 + 0.004 * rng.normal(), 0.1 + 0.004 * rng.normal(), sigma * rng.normal()
+        percept = ObjectPercept(name, x, y, z, turned * (n >= 90) + error, 0.02, 1.6e-5, 1.6e-5, sigma**2)
+        things = objects.see(things, pose, (percept,), n * PERIOD_NS)
+        believed.append(things[0].phi)
+    assert max(map(abs, believed[30:90])) < 2 * sigma  # noise does not turn it
+    assert max(abs(difference(each, turned)) for each in believed[90:]) < 4 * sigma
