@@ -63,21 +63,31 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class ArmTask:
-    """Goes through its stretches; the last one brings the arm home, also after a failure of another."""
+    """Goes through its stretches; the last one brings the arm home, also after a failure of another.
+
+    Attributes:
+      reach: Controller of the arm.
+      stretches: In their order.
+      fastest_radps: Limit of each joint.
+      homing: Whether the last stretch brings the arm home.
+      refused: Why the task does not begin, from the belief and the arguments; "": it does.
+      kept: Set-point at which the gripper of a task that does not begin stays as it is, m.
+    """
 
     reach: Reach
     stretches: tuple[Stretch, ...]
-    fastest_radps: float  # limit of each joint
-    homing: bool = True  # the last stretch brings the arm home
-    refused: Callable[[Any, Array], str] = lambda belief, arguments: ""  # why it does not begin; "": it does
+    fastest_radps: float
+    homing: bool = True
+    refused: Callable[[Any, Array], str] = lambda belief, arguments: ""
+    kept: Callable[[Any], float] = lambda belief: float(belief.width)
 
     def __call__(self, state: Any, now_ns: int, belief: ArmBelief, arguments: Array) -> Control:
         """See tailor.executive.interfaces.action.Controller; velocities of the joints, rad/s, then the width, m."""
         progress = state if isinstance(state, Progress) else self._entered(0, now_ns, belief, arguments, "")
         if progress is None or progress.number >= len(self.stretches):
-            return Control(state, self._still(belief, -1), "failed", "out of reach")
+            return Control(state, self._still(belief), "failed", "out of reach")
         if progress is not state and (refusal := self.refused(belief, arguments)):
-            return Control(state, self._still(belief, -1), "failed", refusal)
+            return Control(state, self._still(belief), "failed", refusal)
         stretch, last = self.stretches[progress.number], progress.number == len(self.stretches) - 1
         progress, velocities, ended = self._advanced(progress, stretch, now_ns, belief)
         command = velocities if stretch.width is None else (*velocities, stretch.width)
@@ -113,6 +123,6 @@ class ArmTask:
         velocities = tuple(max(-most, min(most, velocity)) for velocity in control.command)
         return replace(progress, motion=control.state), velocities, control.outcome == "done"
 
-    def _still(self, belief: ArmBelief, number: int) -> tuple[float, ...]:
-        width = self.stretches[number].width
-        return (0.0,) * len(belief.angles) if width is None else (*(0.0,) * len(belief.angles), belief.width)
+    def _still(self, belief: ArmBelief) -> tuple[float, ...]:
+        rest = (0.0,) * len(belief.angles)
+        return rest if self.stretches[-1].width is None else (*rest, self.kept(belief))

@@ -118,6 +118,10 @@ def _kept(belief: KitchenBelief) -> str:
     return "still holds the cup" if belief.held else ""
 
 
+def _kept_width(belief: KitchenBelief) -> float:
+    return robot.kept_width(belief.width, belief.force)
+
+
 REACH_SPOT = ArmTask(REACH, (Stretch(Hand(OVER_M, BACK_M)),), JOINT_MAX_RADPS, homing=False)
 FOLD = ArmTask(REACH, (Stretch(_home),), JOINT_MAX_RADPS)
 GRIP = ArmTask(
@@ -131,6 +135,7 @@ GRIP = ArmTask(
     ),
     JOINT_MAX_RADPS,
     refused=_unseen,
+    kept=_kept_width,
 )
 PUT = ArmTask(
     REACH,
@@ -142,4 +147,5 @@ PUT = ArmTask(
         Stretch(_home, WIDE),
     ),
     JOINT_MAX_RADPS,
+    kept=_kept_width,
 )

@@ -86,8 +86,7 @@ class KitchenDomain:
 
     def kept(self, belief: KitchenBelief) -> tuple[float, ...]:
         """Set-points at which the gripper stays as wide as it is, and goes on pressing what is in it."""
-        pressed_m = robot.PRESSED_M if belief.force > robot.PRESSED_N else 0.0
-        return (*(0.0,) * (len(BASE) + len(ARM)), max(0.0, belief.width - pressed_m))
+        return (*(0.0,) * (len(BASE) + len(ARM)), robot.kept_width(belief.width, belief.force))
 
     def measurement_fault(self, belief: KitchenBelief, message: Message) -> str:
         """Why a message is no measurement, see kitchen.implausible."""

@@ -31,6 +31,11 @@ ARM = Chain(
 )
 
 
+def kept_width(width: float, force: float) -> float:
+    """Set-point (m) at which a gripper of a width (m) stays as it is, and goes on pressing what it presses (N)."""
+    return max(0.0, width - (PRESSED_M if force > PRESSED_N else 0.0))
+
+
 def level_hand(ahead: float, left: float, z: float, aside: float, back: float = 0.0) -> HandPose:
     """A level hand at a place in base_link (m), `back` metres behind it.
 

@@ -104,6 +104,14 @@ def test_what_is_out_of_reach_fails_before_the_arm_moves():
     assert len(beliefs) == 1
 
 
+def test_a_cup_is_held_on_to_where_it_cannot_be_put():
+    """The fingers were sent to where they touched it, and pressed it no more."""
+    holding = believed(width=0.074, force=30.0, held="cup1")
+    _, control = run(PUT_CUP, holding, spot=(1.6, 0.0))
+    assert (control.outcome, control.detail) == ("failed", "out of reach")
+    assert control.command[-1] == pytest.approx(0.074 - robot.PRESSED_M)
+
+
 def test_put_opens_at_the_spot_and_comes_home():
     beliefs, control = run(PUT_CUP, believed(width=0.0, held="cup1"))
     assert control.outcome == "done"
