@@ -34,7 +34,7 @@ class B21Body:
     """See `Body`. Start values, SI, map frame: ROBOT, FURNITURE, CUPS, MISCHIEF.
 
     Cups that the start does not place are not there. cupN_vx, cupN_vy push a cup; `held` is the number of a cup that
-    the gripper holds, 0 for none; a `slip` of 1 drops what it holds; `fumble` is a number of grasps to fail.
+    the gripper holds, 0 for none: it drops what it holds, as at a `slip` of 1; `fumble` is a number of grasps to fail.
     """
 
     robot = "b21"
@@ -90,7 +90,7 @@ class B21Body:
             self._place_robot(values)
         for name in kitchen().cups:
             self._place_cup(name, values)
-        if values.get("slip", 0.0) > 0.0:
+        if values.get("slip", 0.0) > 0.0 or values.get("held") == 0.0:
             self._grasp.lose()
         if "fumble" in values:
             self._grasp.fumbles = round(values["fumble"])
@@ -185,10 +185,12 @@ class B21Body:
         width = values.get("width", robot.width)
         robot.place((x, y, phi), v, omega, angles, width)
         self._firmware.reset(v, omega, angles, width)
+        self._grasp.carry()
 
     def _place_cup(self, name: str, values: Mapping[str, float]) -> None:
-        if f"{name}_x" in values or f"{name}_y" in values:
-            old = self._cups.object(name) if name in self._cups.bodies else None
+        old = self._cups.object(name) if name in self._cups.bodies else None
+        turned = old is not None and f"{name}_phi" in values
+        if turned or f"{name}_x" in values or f"{name}_y" in values:
             here = (old.x, old.y, old.phi) if old is not None else (0.0, 0.0, 0.0)
             x, y, phi = (values.get(f"{name}_{q}", at) for q, at in zip(("x", "y", "phi"), here, strict=True))
             if self._grasp.held == name:

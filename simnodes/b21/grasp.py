@@ -31,6 +31,7 @@ class Grasp:
         self._bullet, self._p, self._robot, self._cups = pybullet(), parameters, robot, cups
         self._where: dict[str, Any] = {"physicsClientId": client}
         self._constraint = -1
+        self._in_hand: Any = None  # place of what is held, relative to the hand
         self._steps = 0
         self._slipping = ""  # the cup that was not held, or no longer: until the gripper opens
         self.held = ""
@@ -72,12 +73,13 @@ class Grasp:
             self._slip(slipping)
 
     def hold(self, cup: str) -> None:
-        """Hold a cup where it is relative to the hand."""
+        """Hold a cup where it is relative to the hand, and nothing else."""
+        self.release()
         body, bullet = self._cups.bodies[cup], self._bullet
-        state = bullet.getLinkState(self._robot.body, self._robot.hand, computeForwardKinematics=True, **self._where)
-        back = bullet.invertTransform(state[0], state[1])  # of the hand's centre of mass, to which constraints refer
         at, turned = bullet.multiplyTransforms(
-            *back, *bullet.getBasePositionAndOrientation(body, **self._where), **self._where
+            *bullet.invertTransform(*self._hand()),
+            *bullet.getBasePositionAndOrientation(body, **self._where),
+            **self._where,
         )
         self._constraint = bullet.createConstraint(
             self._robot.body,
@@ -93,7 +95,17 @@ class Grasp:
         )
         bullet.changeConstraint(self._constraint, maxForce=STRONGER * self._p.hold_n, **self._where)
         self.held, self.width, self._steps = cup, self._robot.width, 0
+        self._in_hand = at, turned
         self._let_touch(cup, False)
+
+    def carry(self) -> None:
+        """Bring what is held to where the hand is now, after the robot was put elsewhere, as fast as its base."""
+        if self.held:
+            robot, body = self._robot, self._cups.bodies[self.held]
+            place = self._bullet.multiplyTransforms(*self._hand(), *self._in_hand, **self._where)
+            self._bullet.resetBasePositionAndOrientation(body, *place, **self._where)
+            velocity = robot.v * math.cos(robot.phi), robot.v * math.sin(robot.phi), 0.0
+            self._bullet.resetBaseVelocity(body, velocity, (0.0, 0.0, 0.0), **self._where)
 
     def release(self) -> None:
         """Let go of what is held, if anything is."""
@@ -101,6 +113,11 @@ class Grasp:
             self._bullet.removeConstraint(self._constraint, **self._where)
             self._let_touch(self.held, True)
         self._constraint, self.held, self.width, self._steps = -1, "", None, 0
+
+    def _hand(self) -> Any:
+        """Pose of the hand's centre of mass, to which constraints refer."""
+        bullet, robot = self._bullet, self._robot
+        return bullet.getLinkState(robot.body, robot.hand, computeForwardKinematics=True, **self._where)[:2]
 
     def _close_on(self, cup: str) -> None:
         if self.fumbles:
