@@ -52,7 +52,8 @@ def build_context(
     domain = domains.load(config.domain)
     scenario, _ = domains.seeded_scenario(config.domain, config.scenario, config.settings.seed)
     models = (load or load_models)(domain.robot, config.zoo)
-    return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns)
+    doubts = domains.doubts(config.domain)
+    return make_context(domain, scenario, models, config.settings, sender, stamp_offset_ns, doubts)
 
 
 def provenance(config: ExecutiveConfig, context: Context) -> dict[str, Any]:

@@ -8,6 +8,7 @@ SPEC = DomainSpec(
     name="kitchen",
     robot="b21",
     domain="tailor.executive.domains.kitchen:make",
+    doubts="tailor.executive.domains.kitchen.doubts:DOUBTS",
     driver="tailor.simnodes.b21:driver.toml",
     body="tailor.simnodes.b21.profiles:body",
     topics="tailor.robots.kitchen_topics:TOPICS",

@@ -8,6 +8,7 @@ SPEC = DomainSpec(
     name="soccer",
     robot="agilo",
     domain="tailor.executive.domains.soccer:make",
+    doubts="tailor.executive.domains.soccer.doubts:DOUBTS",
     driver="tailor.simnodes.agilo:driver.toml",
     body="tailor.simnodes.agilo.body:AgiloBody",
     topics="tailor.robots.soccer_topics:TOPICS",

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from tailor.executive.core.modes import Conditions, Mode, next_mode
+from tailor.executive.core.sensing.doubts import believed
 from tailor.executive.core.sensing.freshness import (
     MAX_ROUND_TRIP_NS,
     echo_age_ns,
@@ -73,15 +74,26 @@ def _with_readings(context: Context, state: State, samples: tuple[Sample, ...]) 
     received = of_known_senders(domain.sensors, domain.robot, state.streams, samples)
     judge = partial(measurement_fault, domain, state.belief)
     measurements, readings = without_faulty(state.measurements, received, state.fastest, judge)
-    belief = updated(domain, state.belief, state.now_ns, readings, state.command)
+    doubted, kept = believed(state.doubted, readings, partial(_contradicts, context, state))
+    belief = updated(domain, state.belief, state.now_ns, kept, state.command)
     return replace(
         state,
         belief=belief,
+        doubted=doubted,
         carried=relocations(domain, belief) != relocations(domain, state.belief),
         arrivals=newest_arrivals(state.arrivals, readings),
         streams=with_samples(state.streams, received, state.now_ns),
         measurements=measurements,
     )
+
+
+def _contradicts(context: Context, state: State, sample: Sample, before: tuple[Sample, ...]) -> bool:
+    """Whether a sample moves the belief farther than the world moves; `before` are those of this tick before it."""
+    contradicts = context.doubts.get(sample.key)
+    if contradicts is None:
+        return False
+    known = updated(context.domain, state.belief, sample.arrival_ns, before, state.command)
+    return contradicts(known, updated(context.domain, known, sample.arrival_ns, (sample,), state.command))
 
 
 def _driver_of(context: Context, arming: Arming, now_ns: int, inputs: Inputs) -> Arming:

@@ -107,6 +107,7 @@ class State:
     arrivals: Mapping[str, int] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)  # of the sensors, to know their rates
     measurements: Measurements = field(default_factory=Measurements)
+    doubted: Mapping[str, int] = field(default_factory=dict)  # readings in a row that contradict the belief, by key
     fastest: Speeds | None = None  # that odometry may have, by the domain's axes; never changes
     overruns_ns: tuple[int, ...] = ()  # ticks of the last second before which whole periods were lost
     arming: Arming = field(default_factory=Arming)

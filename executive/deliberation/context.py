@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tailor.executive import planning
-from tailor.executive.interfaces.domain import Domain, Scenario
+from tailor.executive.interfaces.domain import Domain, Doubt, Scenario
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.refinement.objective.settings import RefinementSettings
 from tailor.schemas.errors import UsageError
-from tailor.schemas.topics import nominal_rates_hz
+from tailor.schemas.topics import key_of, nominal_rates_hz
 
 PERIOD_NS = 100_000_000  # 10 Hz
 MAX_COAST_TICKS = 5  # while no action runs nobody looks where the robot goes
@@ -82,6 +82,7 @@ class Context:
     stamp_offset_ns: int = 0  # added to the monotonic time for the stamps of messages
     driver_sender: str = ""  # sender id that the driver has when this executive starts; "": the first one heard
     sensor_rates_hz: Mapping[str, float] = field(default_factory=dict)  # nominal, of required sensors, by topic
+    doubts: Mapping[str, Doubt] = field(default_factory=dict)  # by the key of the topic
 
     def stamp(self, now_ns: int) -> int:
         """Stamp of a message, from the monotonic time `now_ns`."""
@@ -89,7 +90,13 @@ class Context:
 
 
 def make_context(
-    domain: Domain, scenario: Scenario, models: Models, settings: Settings, sender: str, stamp_offset_ns: int = 0
+    domain: Domain,
+    scenario: Scenario,
+    models: Models,
+    settings: Settings,
+    sender: str,
+    stamp_offset_ns: int = 0,
+    doubts: Mapping[str, Doubt] | None = None,
 ) -> Context:
     """Build a context; the PDDL of domain and scenario is parsed once.
 
@@ -100,6 +107,7 @@ def make_context(
       settings: Settings of the executive.
       sender: Sender id of this executive, 32 hex digits.
       stamp_offset_ns: Added to the monotonic time for the stamps of messages.
+      doubts: Which readings contradict the belief, by topic, see `domains.doubts`; None: none is doubted.
 
     Raises:
       UsageError: A PDDL error, with line and column.
@@ -118,6 +126,7 @@ def make_context(
         sender,
         stamp_offset_ns,
         sensor_rates_hz=nominal_rates_hz(domain.required),
+        doubts={key_of(topic, domain.robot): doubt for topic, doubt in (doubts or {}).items()},
     )
 
 

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from tailor.executive.interfaces.domain import Domain, Scenario
+from tailor.executive.interfaces.domain import Domain, Doubt, Scenario
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import file, instance, part, spec_of
 from tailor.schemas.packages.spec import DomainSpec
 from tailor.schemas.parsed_files import toml_table
+from tailor.schemas.topics import TOPICS
 
 LAST = 99.0  # order of a scenario that declares none
 SCENARIO_STREAM = 0  # random stream of a run's seed; noise and search use others
@@ -26,6 +27,21 @@ def load(name: str) -> Domain:
     """
     made: Domain = instance(spec_of(name), "domain")
     return made
+
+
+def doubts(name: str) -> Mapping[str, Doubt]:
+    """Which readings of a domain's robot contradict its belief, by topic: those are believed once they are repeated.
+
+    Raises:
+      UsageError: Unknown domain, or its spec names something else.
+    """
+    spec = spec_of(name)
+    if not spec.doubts:
+        return {}
+    found: Any = part(spec, "doubts")
+    if not isinstance(found, Mapping) or not all(topic in TOPICS and callable(found[topic]) for topic in found):
+        raise UsageError(f"domain {name}: doubts = '{spec.doubts}': expected functions (before, after) by topic")
+    return found
 
 
 def scenarios(name: str) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -68,6 +68,9 @@ class LabelQuery:
     achieved: tuple[Fact, ...]
     belief: Belief
     scenario: Scenario
+
+
+Doubt = Callable[[Belief, Belief], bool]  # of the belief before and after a reading: whether it contradicts the first
 
 
 class Domain(Protocol):

@@ -9,7 +9,17 @@ NAME = re.compile(r"[a-z][a-z0-9_-]*")  # part of keys on the bus, of file names
 OBJECT = re.compile(r"[A-Za-z_][\w.]*(:[A-Za-z_]\w*)?")
 RESERVED = ("clock", "estop", "exec", "launch", "recorder", "rosout", "tf")  # first words of keys that are no robot's
 REQUIRED = ("domain", "driver")
-OBJECTS = ("domain", "body", "topics", "sampler", "features", "draw", "generator", "scene")  # the other parts are files
+OBJECTS = (
+    "domain",
+    "doubts",
+    "body",
+    "topics",
+    "sampler",
+    "features",
+    "draw",
+    "generator",
+    "scene",
+)  # else files
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +34,8 @@ class DomainSpec:
       name: Name of the domain; that of the entry point.
       robot: Name of the robot; prefix of its topics' keys.
       domain: Callable without arguments that returns a tailor.executive.interfaces.domain.Domain.
+      doubts: Functions by topic of a sensor, each of the belief before and after a reading: whether a detector may have
+        taken something else for what it looks for. Such a reading is believed once it has come three times in a row.
       driver: File that declares command, axes with limits, and sensors with rates.
       body: Callable without arguments that returns a tailor.simnodes.body.Body; empty for a robot without simulator.
       topics: Topics of the robot beside those that Tailor ships, by name; loaded with the table of topics.
@@ -53,6 +65,7 @@ class DomainSpec:
     scene: str = ""
     models: str = "models"
     package: str = ""
+    doubts: str = ""
 
 
 def faults_of(spec: DomainSpec) -> tuple[str, ...]:

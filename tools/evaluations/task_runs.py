@@ -104,8 +104,8 @@ def _context(task: Task, variant: Variant, seed: int) -> tuple[Context, dict[str
     pinned: Any = PinnedDomain(domain, pins)
     # certificates take time and change no measured value
     settings = Settings(seed=seed, refinement=replace(variant.refinement, certify_checks=0))
-    models = cached_models(domain.robot, task.zoo)
-    context = make_context(pinned, scenario, models, settings, SENDER)
+    models, doubts = cached_models(domain.robot, task.zoo), domains.doubts(task.domain)
+    context = make_context(pinned, scenario, models, settings, SENDER, doubts=doubts)
     if task.goal:
         context = replace(context, problem=context.problem.with_goal(task.goal))
     return context, start

@@ -138,7 +138,8 @@ class TaskEnv(gymnasium.Env[Any, Any]):  # type: ignore[misc]
     def _begin(self, seed: int) -> None:
         """Put body and executive at the start of a scenario, and run the first tick."""
         scenario, start = domains.seeded_scenario(self._domain.name, self._scenario, seed)
-        self._context = make_context(self._domain, scenario, self._models, Settings(seed=seed), SENDER)
+        doubts = domains.doubts(self._domain.name)
+        self._context = make_context(self._domain, scenario, self._models, Settings(seed=seed), SENDER, doubts=doubts)
         world = World(self._body, start, seed, events_of(scenario))
         self._link, self._tick, self._outputs = DriverLink(self._domain, world, SENDER), 0, ()
         self._state = initial_state(self._context)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tailor.schemas.packages.spec import DomainSpec
 
-LATER = ("body", "sampler", "features", "draw", "generator", "scene")  # imported by the processes that need them
+LATER = ("doubts", "body", "sampler", "features", "draw", "generator", "scene")  # imported by who needs them
 
 
 def faults_of_parts(spec: DomainSpec) -> Iterator[str]:

@@ -110,6 +110,7 @@ def _run(policy: Policy, scenario: str, seed: int) -> list[tuple[str, Episode]]:
     domain = domains.load(policy.domain)
     drawn, start = domains.seeded_scenario(policy.domain, scenario, seed)
     settings = Settings(seed=seed, refinement=policy.refinement)
-    context = make_context(domain, drawn, cached_models(domain.robot, policy.zoo), settings, SENDER)
+    models, doubts = cached_models(domain.robot, policy.zoo), domains.doubts(policy.domain)
+    context = make_context(domain, drawn, models, settings, SENDER, doubts=doubts)
     world = World(body_of(policy.domain, policy.profile), start, seed)
     return EpisodeExtractor(domain).read(run_lockstep(context, world).messages)

@@ -88,7 +88,8 @@ def refined_choices(domain_name: str, scenario: str, seed: int, zoo: str, body: 
     domain = domains.load(domain_name)
     drawn, start = domains.seeded_scenario(domain_name, scenario, seed)
     settings = Settings(seed=seed, refinement=UNPROVEN)
-    context = make_context(domain, drawn, cached_models(domain.robot, zoo), settings, SENDER)
+    models, doubts = cached_models(domain.robot, zoo), domains.doubts(domain_name)
+    context = make_context(domain, drawn, models, settings, SENDER, doubts=doubts)
     decision = _FirstDecision()
     try:
         run_lockstep(context, World(body, start, seed), limit_s=DECISION_S, on_tick=decision)

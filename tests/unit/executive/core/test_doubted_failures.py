@@ -1,4 +1,4 @@
-"""A deliberation at rest finds no way: the task fails once there has been none for half a second, not by one percept."""
+"""A deliberation at rest finds no way: the task fails once there is none for half a second, not by one percept."""
 
 from __future__ import annotations
 

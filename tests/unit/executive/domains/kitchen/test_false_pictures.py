@@ -1,0 +1,36 @@
+"""Which pictures of the kitchen are doubted: those by which an object that has been seen would be another one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tailor.executive import domains
+from tests.unit.executive.domains.kitchen.test_phantoms import believed, percept
+
+DOUBTS = domains.doubts("kitchen")["objects"]
+CUP = percept("cup1", 1.0)
+
+
+def doubted(*pictures):
+    """Whether the last picture is."""
+    return DOUBTS(believed(*pictures[:-1]), believed(*pictures))
+
+
+def test_what_is_seen_for_the_first_time_or_again_or_not_is_believed():
+    assert not doubted([], [CUP])
+    assert not doubted([CUP], [CUP, percept("stool", 2.0)])
+    assert not doubted([CUP], [replace(CUP, x=1.01, phi=0.05, tilt=0.05)])
+    assert not doubted([CUP], [])
+
+
+@pytest.mark.parametrize(
+    "change", [{"x": 1.3}, {"y": -0.2}, {"z": CUP.z + 0.2}, {"phi": 1.0}, {"phi": -1.0}, {"tilt": 1.2}]
+)
+def test_an_object_that_would_be_elsewhere_or_turned_or_down_at_once_is_doubted(change):
+    assert doubted([CUP], [CUP], [replace(CUP, **change), percept("stool", 2.0)])
+
+
+def test_a_direction_is_a_matter_of_the_full_turn():
+    assert not doubted([replace(CUP, phi=3.13)], [replace(CUP, phi=-3.13)])
