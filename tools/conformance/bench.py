@@ -22,6 +22,7 @@ PERIOD_S = 0.1  # of commands, as an executive sends them
 SETTLE_S = 0.3  # until a request or a command shows in the driver's state and in its sensors
 PATIENCE_S = 6.0  # for the robot to come to rest
 SENDER = re.compile(rf"\b[0-9a-f]{{{SHOWN_DIGITS}}}\b")  # of a switch, in the detail of a driver's state
+BLIND_S = 0.5  # without a measurement for so long nobody knows whether the robot moves
 FRESH_S = 1.0  # ten periods of the driver's state: an older one is that of a driver which has ended
 
 
@@ -50,6 +51,7 @@ class Bench:
         self.sent = 0
         self.sender, self.other = secrets.token_hex(16), secrets.token_hex(16)
         self._numbers: Counter[str] = Counter()
+        self._shown: set[int] = set()  # axes that sensors have shown
         self._before: set[str] | None = None  # dead man's switches that were let go before
 
     def wait(self, seconds: float) -> None:
@@ -136,9 +138,10 @@ class Bench:
         return at_rest(self.domain.axes)
 
     def tests(self) -> Iterator[tuple[int, float]]:
-        """Index and test speed of each axis that sensors show, without those that keep their set-points."""
+        """Index and test speed of each axis that sensors have shown, without those that keep their set-points."""
         for index, (axis, limit) in enumerate(zip(self.domain.axes, self.spec.limits, strict=True)):
-            if limit.kept is None and self.measured(axis.name) is not None:
+            if limit.kept is None and (index in self._shown or self.measured(axis.name) is not None):
+                self._shown.add(index)
                 yield index, farther(limit) * self.fraction
 
     def tested_axes(self) -> list[tuple[int, float]]:
@@ -162,15 +165,24 @@ class Bench:
         return tuple(speed if each == index else value for each, value in enumerate(self.rest))
 
     def measured(self, axis: str, window_s: float = 0.2) -> float | None:
-        """Mean speed of an axis over the last moments; None if no sensor shows it."""
-        since_s = self.link.now_s() - window_s
-        recent = itertools.takewhile(lambda each: each.at_s >= since_s, reversed(self.log))
-        values = [value for each in recent if (value := speed_in(each, axis)) is not None]
+        """Mean speed of an axis over the last moments, or else its newest of BLIND_S; None if no sensor shows it."""
+        now_s = self.link.now_s()
+        recent = itertools.takewhile(lambda each: each.at_s >= now_s - BLIND_S, reversed(self.log))
+        speeds = [(each.at_s, value) for each in recent if (value := speed_in(each, axis)) is not None]
+        values = [value for at_s, value in speeds if at_s >= now_s - window_s] or [value for _, value in speeds[:1]]
         return sum(values) / len(values) if values else None
 
     def is_moving(self) -> bool:
-        """Whether an axis moves at more than a third of its test speed."""
-        return any(abs(self.measured(self.domain.axes[i].name) or 0.0) > abs(speed) / 3 for i, speed in self.tests())
+        """Whether an axis moves at more than a third of its test speed.
+
+        Raises:
+          NotPossible: A sensor that has shown an axis is silent: the robot may stand or roll on.
+        """
+        speeds = [(self.domain.axes[i].name, speed) for i, speed in self.tests()]
+        found = {name: self.measured(name) for name, _ in speeds}
+        if silent := [name for name, speed in found.items() if speed is None]:
+            raise NotPossible(f"no sensor shows the speed of {', '.join(silent)} any more")
+        return any(abs(found[name] or 0.0) > abs(speed) / 3 for name, speed in speeds)
 
     def begin(self) -> None:
         """Bring the driver to rest, disarmed and with no e-stop latched.
