@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from tailor.schemas.messages import DriverState
+from tailor.simnodes.guard import Limit
 from tailor.tools.conformance.bench import SETTLE_S, Bench
 from tailor.tools.conformance.clause import clause
 
@@ -69,9 +70,13 @@ def refuses_numbers_that_are_not_finite(bench: Bench) -> Iterator[str]:
 @clause
 def refuses_values_beyond_limits(bench: Bench) -> Iterator[str]:
     """A command beyond the declared limits is refused, not clipped; one on a limit is legal."""
-    upper = bench.spec.limits[0].upper
-    values = [upper * 1.01 + 1e-6, *bench.rest[1:]]
+    values = [beyond(bench.spec.limits[0]), *bench.rest[1:]]
     yield from _refuses(bench, "beyond a limit", lambda: bench.send(values, counts=False))
+
+
+def beyond(limit: Limit) -> float:
+    """A value a little above the range of an axis; that of one which keeps its set-point may lie below zero."""
+    return limit.upper + 0.01 * abs(limit.upper) + 1e-6
 
 
 def _refuses(bench: Bench, what: str, wrong: Callable[[], None]) -> Iterator[str]:
