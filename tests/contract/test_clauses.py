@@ -16,6 +16,7 @@ from tailor.executive.interfaces.values import Interval
 from tailor.models.features.features import FeatureSpace, quantities
 from tailor.schemas.installed import models_folder
 from tailor.schemas.packages.scene import sphere
+from tailor.tools.contract import package_clauses
 from tailor.tools.contract.subject import Subject
 from tailor.tools.contract.suite import CLAUSES, cases
 from tailor.tools.contract.units import is_unit
@@ -349,3 +350,17 @@ OF_SEVERAL_OUTLETS = ("outlets_are_driven",)  # test_outlet_clauses.py
 def test_a_robot_that_breaks_a_clause_breaks_it_alone(name, subject):
     BAD[name](subject)
     assert broken(subject) == {name}
+
+
+def test_a_model_of_success_beside_an_object_is_not_forgotten(subject, monkeypatch):
+    """Without it, the executive of a robot that keeps to the contract does not start."""
+    names = [{"name": parameter.name} for parameter in subject.domain.actions["drive"].parameters]
+    duration = types.SimpleNamespace(card={"arguments": names})
+    models = types.SimpleNamespace(durations={"drive/duration": duration}, successes={})
+    monkeypatch.setattr(package_clauses, "load_models", lambda robot: models)
+    (models_folder("cart") / "cart").mkdir(parents=True)
+    check = CLAUSES["models_fit_the_actions"].check
+    assert list(check(subject, "")) == []
+    column = ContextColumn("box_x", "m", -1.0, 1.0)
+    with_action(subject, context=ActionContext((column,), lambda belief: [], "drive/clearance", "box"))
+    assert list(check(subject, "")) == ["drive: there is no model drive/clearance"]

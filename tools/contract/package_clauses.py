@@ -93,7 +93,10 @@ def _fault_of_unit(what: str, unit: str) -> Iterator[str]:
 
 @clause("package")
 def models_fit_the_actions(subject: Subject, case: str) -> Iterator[str]:
-    """The models, where there are any, load, take the arguments of their actions and were trained on their ranges."""
+    """The models, where there are any, load, take the arguments of their actions and were trained on their ranges.
+
+    An action that has a context needs a model of its success beside an object, too, whose arguments are free.
+    """
     robot, domain = subject.domain.robot, subject.domain
     if not (models_folder(robot) / robot).is_dir():
         return
@@ -104,11 +107,12 @@ def models_fit_the_actions(subject: Subject, case: str) -> Iterator[str]:
         return
     for action in domain.actions.values():
         names = [parameter.name for parameter in action.parameters]
-        for model in filter(None, (action.duration_model, action.success_model)):
+        beside = action.context.success_model if action.context is not None else ""
+        for model in filter(None, (action.duration_model, action.success_model, beside)):
             found = {**models.durations, **models.successes}.get(model)
             if found is None:
                 yield f"{action.name}: there is no model {model}"
-            elif (takes := [each["name"] for each in found.card["arguments"]]) != names:
+            elif model != beside and (takes := [each["name"] for each in found.card["arguments"]]) != names:
                 yield f"{model}: takes {' '.join(takes)}, expected {' '.join(names)} by the action {action.name}"
 
 
