@@ -1,14 +1,18 @@
-"""A driver whose sensors say nothing, or say it rarely: whether its robot stands is not known, or known later."""
+"""A driver whose sensors are silent, seldom or without stamps."""
+
+from dataclasses import replace
 
 import pytest
 
 from tailor.executive import domains
+from tailor.schemas.messages import EStop
 from tailor.simnodes.guard import Mode
 from tailor.simnodes.world import World
 from tailor.tools.conformance.bench import Bench
+from tailor.tools.conformance.publishing_clauses import publishes_no_stale_data
 from tailor.tools.conformance.simulated_link import SimulatedLink
 from tailor.tools.conformance.suite import verdicts
-from tests.support.stand_ins.bad_drivers import SPEC
+from tests.support.stand_ins.bad_drivers import SPEC, good
 from tests.support.stand_ins.body import FakeBody
 
 DOMAIN = domains.load("soccer")
@@ -66,3 +70,15 @@ def test_a_robot_that_rolls_on_in_silence_does_not_count_as_stopped(clause):
 def test_a_robot_that_shows_its_motion_seldom_moves_as_commanded_and_stops():
     found = judged(Seldom(), "moves_as_commanded", "stays_stopped", "stops_at_an_estop")
     assert [(each.faults, each.skipped) for each in found] == [((), "")] * 3
+
+
+def test_messages_without_a_stamp_are_not_old_ones():
+    """Each was said to be: the stamp that a package's own message leaves out counted as 0."""
+    link = good()
+    wait = link.wait
+    link.wait = lambda seconds: [replace(each, message=bare(each)) for each in wait(seconds)]
+    assert list(publishes_no_stale_data(Bench(link, DOMAIN, SPEC, fraction=0.2))) == []
+
+
+def bare(heard):
+    return EStop(stop=False) if heard.topic == "odom" else heard.message
