@@ -111,6 +111,7 @@ def hold_in_terminal(session: Session, output: TextIO) -> None:
     with Keyboard() as keyboard:
 
         def released() -> bool:
+            keyboard.take()
             if stop.requested or not _readable():
                 return stop.requested
             with suppress(OSError):  # a terminal that has gone

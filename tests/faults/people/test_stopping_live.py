@@ -7,6 +7,7 @@ import random
 import re
 import signal
 import subprocess
+import termios
 import time
 import urllib.request
 from contextlib import contextmanager
@@ -81,6 +82,13 @@ class Held:
     def key(self, key=b" "):
         os.write(self.terminal, key)
 
+    def key_after_the_shell_had_the_terminal(self):
+        """After Ctrl-Z and `fg`, when a shell has set it up for whole lines."""
+        settings = termios.tcgetattr(self.terminal)
+        settings[3] |= termios.ICANON | termios.ECHO
+        termios.tcsetattr(self.terminal, termios.TCSANOW, settings)
+        self.key()
+
     def close(self):
         os.close(self.terminal)
         self.terminal = None
@@ -98,6 +106,7 @@ class Held:
 
 WAYS = {
     "space": (Held.key, RELEASE_LIMIT_S),
+    "space after fg": (Held.key_after_the_shell_had_the_terminal, RELEASE_LIMIT_S),
     "Enter": (lambda held: held.key(b"\n"), RELEASE_LIMIT_S),
     "Ctrl-C": (lambda held: held.signal(signal.SIGINT), RELEASE_LIMIT_S),
     "a closed terminal": (Held.close, RELEASE_LIMIT_S),
