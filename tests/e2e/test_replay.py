@@ -2,6 +2,7 @@
 
 import os
 import pty
+import signal
 import subprocess
 import sys
 import termios
@@ -119,6 +120,29 @@ def test_keys_step_pause_and_end_a_replay(tmp_path):
             os.write(keys, b"q")
             assert player.wait(PATIENCE_S) == 0
             assert "footer" not in player.stderr.read(), "what was not played is not damaged"
+
+
+def test_a_repetition_is_played_as_the_keys_have_it(recording):
+    """Each round began paused again, and at the first rate."""
+    with bus_system() as (session, endpoint, _):
+        odometry = collect(session, ["odom"])
+        options = ("--paused", "--loop", "--rate", "20", "--topics", "odom")
+        with player_with_keys(recording, endpoint, *options) as (_, keys):
+            os.write(keys, b" ")
+            wait_until(lambda: [sample.sequence for sample in odometry()].count(20) == 3, "the third round")
+
+
+@pytest.mark.parametrize("options", [(), ("--substitute", "executive")], ids=["subscribers", "an executive"])
+def test_ctrl_c_ends_a_replay_that_waits_for(options, recording):
+    with bus_system() as (_, endpoint, _):
+        player = subprocess.Popen(command(recording, endpoint, "--wait", "1000", *options), cwd=ROOT)
+        try:
+            time.sleep(2.0)
+            player.send_signal(signal.SIGINT)
+            assert player.wait(5.0) in (130, -signal.SIGINT), "the latter where a busy machine has not loaded it yet"
+        finally:
+            player.kill()
+            player.wait(PATIENCE_S)
 
 
 @pytest.mark.promise("P14")

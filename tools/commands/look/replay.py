@@ -21,7 +21,7 @@ from tailor.runtime.recordings.playback_clock import MAX_RATE, MIN_RATE, Playbac
 from tailor.runtime.recordings.player import PlaybackStats, Player
 from tailor.runtime.recordings.recording import open_recording
 from tailor.runtime.recordings.selection import Selection, selection
-from tailor.runtime.stopping import Stop, stop_on_signals
+from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas import codec
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import Clock
@@ -92,7 +92,6 @@ def run(arguments: argparse.Namespace) -> int:
     secured = _is_secured(arguments)
     if secured and (arguments.drive or arguments.substitute):
         raise UsageError(f"{'--drive' if arguments.drive else f'--substitute {arguments.substitute}'}: {SECURED}")
-    stop = stop_on_signals()
     with open_bus(arguments, "player") as session:
         codec.prime()
         changes: dict[str, Any] = {}
@@ -110,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
                 _warn(f"on a secured bus nobody replays {', '.join(sorted(part.left_out))}; omitted")
         publishers = Publishers(session, part.channels())
         damage = recording.damage.text()  # all of it has been read; the playback may end early
-        stats = _play(arguments, session, part, publishers, stop)
+        stats = _play(arguments, session, part, publishers)
         disconnected = not session.connected
     _report(stats, arguments.json)
     if damage:
@@ -121,12 +120,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _play(
-    arguments: argparse.Namespace, session: Session, part: RecordingPart, publishers: Publishers, stop: Stop
+    arguments: argparse.Namespace, session: Session, part: RecordingPart, publishers: Publishers
 ) -> PlaybackStats:
     clock = MonotonicClock()
     unmatched = publishers.wait(arguments.wait)
     if unmatched:
         _warn(f"no subscriber of: {', '.join(unmatched)}")
+    stop = stop_on_signals()  # not earlier: until here, where a signal may end all at once, nothing looks at it
     with Keyboard() as keyboard:
 
         def watch(playback: PlaybackClock) -> bool:
@@ -139,10 +139,9 @@ def _play(
         tick_ns = round(1e9 / arguments.clock) if arguments.clock else 0
         player = Player(publishers, clock, watch, tick, tick_ns)
         start_ns, _ = part.bounds_ns()
-        repeat = True
-        while repeat:
-            playback = PlaybackClock(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
-            repeat = player.play(part.messages(), playback) and arguments.loop
+        playback = PlaybackClock(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
+        while player.play(part.messages(), playback) and arguments.loop:
+            playback.jump(start_ns, clock.now_ns())
     time.sleep(TAIL_S)
     return player.stats
 
