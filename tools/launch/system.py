@@ -108,7 +108,9 @@ class _System:
         robot = hardware_process(config, senders) if config.hardware else sim_process(config, senders, self._robot)
         self._start(robot)
         self._start(executive_process(config, senders))  # it loads meanwhile, and waits
-        if not self._is_ready(robot.name):
+        if not self._is_ready(robot.name, beside="executive"):
+            if self._supervisor.state(robot.name) is State.STARTING:  # hardware may be awaited for long
+                return "" if self._stop.requested else "failed: executive ended"
             failure = self._not_started("driver" if config.hardware else "simulator")
             if failure and self._supervisor.refused(robot.name):  # it has printed why: an extra is missing, say
                 raise UsageError(failure)
@@ -118,9 +120,14 @@ class _System:
     def _start(self, spec: ProcessSpec) -> None:
         self._supervisor.start(spec, time.monotonic_ns())
 
-    def _is_ready(self, name: str) -> bool:
-        """Wait for a process; False if it ends before it is ready, is not ready in time, or on a stop request."""
+    def _is_ready(self, name: str, beside: str = "") -> bool:
+        """Wait for a process; False if it ends before it is ready, is not ready in time, or on a stop request.
+
+        Also if the process `beside` it, which starts meanwhile, has ended for good.
+        """
         while self._supervisor.state(name) is State.STARTING and not self._stop.requested:
+            if beside and self._supervisor.state(beside) is State.ENDED:
+                break
             time.sleep(0.02)
             self._poll(time.monotonic_ns())
         return self._supervisor.state(name) is State.RUNNING

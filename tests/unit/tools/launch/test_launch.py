@@ -79,6 +79,22 @@ def test_a_robot_whose_process_refuses_its_input_is_bad_input(refused):
         run.run()
 
 
+def test_hardware_that_is_awaited_is_awaited_no_longer_than_there_is_an_executive():
+    run = object.__new__(system._System)
+    run._config, run._senders, run._robot = config(record=None, hardware="robot.toml"), Senders(), "agilo"
+    run._stop = SimpleNamespace(requested=False)
+    states, polls = {"driver": State.STARTING, "executive": State.STARTING}, []
+    run._supervisor = SimpleNamespace(start=lambda *_: None, state=states.get)
+
+    def poll(_):
+        polls.append(1)
+        states["executive"] = State.ENDED
+        assert len(polls) < 3, "it waits on"
+
+    run._poll = poll
+    assert run.run() == "failed: executive ended"
+
+
 def test_only_the_first_start_of_a_driver_knows_who_has_leave():
     senders = Senders()
     sim = sim_process(config(), senders, "agilo")
