@@ -129,7 +129,8 @@ class Session:
     def player(self, key: str, ros_type: str) -> Publisher:
         """Publisher of recorded bytes under any key; waits rather than drop, so never use it in a tick.
 
-        A topic of the table is published under the keys of this session's profile.
+        A topic of the table is published under the keys of this session's profile. The router drops what a subscriber
+        does not read in time. Its queues hold batches, so messages share them: apart, a fast replay would lose most.
 
         Raises:
           UsageError: The key is invalid, or a pattern, or the name of the type too long.
@@ -142,9 +143,7 @@ class Session:
         known = topic is not None and encoding == encoding_of(topic.type)
         keys = self._keys_of(topic, key) if topic is not None and known else [(key, encoding)]
         declared = [
-            self._zenoh.declare_publisher(
-                each, encoding=encoded, congestion_control=zenoh.CongestionControl.BLOCK, express=True
-            )
+            self._zenoh.declare_publisher(each, encoding=encoded, congestion_control=zenoh.CongestionControl.BLOCK)
             for each, encoded in keys
         ]
         self._publishers += declared

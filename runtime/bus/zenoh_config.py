@@ -30,6 +30,15 @@ BY_CERTIFICATE = Password(*CERTIFICATE_USER.split(":"))
 PRIORITIES = ("control", *TOPIC_PRIORITIES)
 # Allocated as a session opens: else each backlog takes further buffers of 64 kB, and memory grows for hours.
 QUEUES = {"allocation": {"mode": "init"}, "size": dict.fromkeys(PRIORITIES, QUEUE_SIZE)}
+# A message that may block, as those of replays and of ROS 2, made the router wait up to 5 s for each subscriber that
+# reads nothing, and everybody else with it: e-stops came seconds late.
+NEVER_BLOCK = {
+    "id": "never block",
+    "messages": ["put", "delete", "query"],
+    "key_exprs": ["**"],
+    "overwrite": {"congestion_control": "drop"},
+    "flows": ["ingress"],
+}
 _LABEL = r"[A-Za-z0-9-]{1,63}"  # of a host's name; Python looks up no name with an empty or a longer one
 _ENDPOINT = re.compile(rf"(tcp|tls|quic|udp|ws)/(\[[0-9a-fA-F:]{{2,45}}\]|({_LABEL}\.)*{_LABEL}\.?):([0-9]{{1,5}})")
 
@@ -140,6 +149,7 @@ def _listening(endpoint: str, local: bool = False) -> dict[str, Any]:
     config = _base("router")
     config["downsampling"] = access.rate_limits(access.LOCAL_LIMIT_HZ if local else access.PEER_LIMIT_HZ)
     config["listen"] = {"endpoints": [endpoint], "timeout_ms": 0, "exit_on_failure": True}
+    config["qos"] = {"network": [NEVER_BLOCK]}
     config["transport"]["unicast"] = {"accept_pending": MAX_PENDING, "accept_timeout": ACCEPT_MS}
     return config
 

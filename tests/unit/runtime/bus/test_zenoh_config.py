@@ -89,6 +89,15 @@ def test_every_router_limits_the_rate_of_e_stops(folder):
     assert local["downsampling"] == access.rate_limits(5000.0), "of all peers of the gateway together"
 
 
+def test_no_router_waits_for_a_subscriber(folder):
+    routers = (zenoh_config.local_router(folder), zenoh_config.gateway(ENDPOINT, folder, None, {}))
+    for config in (ROUTER, *map(json.loads, routers)):
+        (rule,) = config["qos"]["network"]
+        assert (rule["key_exprs"], rule["flows"]) == (["**"], ["ingress"])
+        assert rule["overwrite"] == {"congestion_control": "drop"}
+        assert {"put", "delete", "query"} == set(rule["messages"]), "all that may block by the choice of who sends it"
+
+
 def test_the_local_router_demands_passwords_and_applies_the_rules(folder):
     config = json.loads(zenoh_config.local_router(folder))
     subjects = [{"id": user, "usernames": [user]} for user in (*ROLES, access.GATEWAY)]
