@@ -10,13 +10,15 @@ function scale(from, to, low, high) {
   return map;
 }
 
-/** Round numbers in [from, to], about `count` of them. */
+/** Round numbers in [from, to], about `count` of them; `from` alone where floats are too coarse for more. */
 function ticks(from, to, count) {
   const span = to - from;
   if (!(span > 0)) return [from];
   const raw = span / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= raw * 0.999);
+  const most = Math.max(Math.abs(from), Math.abs(to)) / step;
+  if (!(most < Number.MAX_SAFE_INTEGER)) return [from]; // the number after k is k: the loop would not end
   const found = [];
   for (let k = Math.ceil(from / step - 1e-9); k * step <= to + step * 1e-6; k += 1)
     found.push(Number((k * step).toPrecision(12)));

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from tests.support.patience import PATIENCE_S
+
 NODE = shutil.which("node")
 EACH_S, ALL_S = 20, 1500
 LIVE = """
@@ -65,15 +67,22 @@ const run = new Run();
 run.add([60, "believed", {x: 12, y: 0, phi: 0}]);
 console.log(JSON.stringify(run.pieces("believed", 0, Infinity).map((piece) => piece.map((p) => p.x))));
 """
+COARSE = """
+const found = [[1e17, 1e17 + 64], [1.7e18, 1.7e18 + 256], [-1e300, 1e300], [NaN, 1], [0, Infinity]].map(
+  ([from, to]) => ticks(from, to, 5).length,
+);
+console.log(JSON.stringify(found));
+"""
 needs_node = pytest.mark.skipif(NODE is None, reason="no Node.js here: install Debian's package nodejs")
 
 
 def printed(script: str) -> Any:
     """What a script that uses the page's `Run` prints as JSON."""
     assets = resources.files("tailor.tools.viewer") / "assets"
-    scripts = [(assets / name).read_text("utf-8") for name in ("elements.js", "columns.js", "run.js", "field.js")]
-    whole = "\n".join([*scripts, script])
-    return json.loads(subprocess.run([NODE, "-"], input=whole, capture_output=True, text=True, check=True).stdout)
+    names = ("elements.js", "scales.js", "columns.js", "run.js", "field.js")
+    whole = "\n".join([*[(assets / name).read_text("utf-8") for name in names], script])
+    run = subprocess.run([NODE, "-"], input=whole, capture_output=True, text=True, check=True, timeout=PATIENCE_S)
+    return json.loads(run.stdout)
 
 
 @needs_node
@@ -106,3 +115,8 @@ def test_no_line_leads_to_where_a_simulator_has_put_the_robot_at_a_restart() -> 
 def test_no_line_leads_to_where_no_robot_can_have_driven_meanwhile() -> None:
     """Such as after `sim/reset`, or where a robot was carried."""
     assert printed(CARRIED) == [[0, 0.9, 1.8], [8, 8.9, 8.9, 12]]
+
+
+@needs_node
+def test_an_axis_has_an_end_where_floats_are_too_coarse_to_count_along_it() -> None:
+    assert all(number <= 20 for number in printed(COARSE))
