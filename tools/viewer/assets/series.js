@@ -65,10 +65,11 @@ class Series {
   others() {
     return this.run.series().flatMap((kind) => {
       const rows = this.run.all(kind);
-      const names = Object.keys(rows[0]).filter((name) => name !== "at");
-      const lines = names.map((name) => ({
+      const names = new Set(rows.flatMap(Object.keys)); // not of the first row alone: each joint may have its publisher
+      names.delete("at");
+      const lines = [...names].map((name) => ({
         name: `${kind.slice(7)} ${name}`,
-        points: rows.map((row) => [row.at, row[name]]),
+        points: rows.filter((row) => name in row).map((row) => [row.at, row[name]]),
         goals: [],
       }));
       return lines

@@ -1,0 +1,50 @@
+"""What no page expects: joints that not every message names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tailor.schemas import messages as m
+from tailor.tools.viewer.page import page
+from tailor.tools.viewer.timeline import Event, RunTimeline
+from tests.support.browser import PROGRAM, Browser
+
+pytestmark = [
+    pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),
+    pytest.mark.xdist_group("browser"),
+]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with Browser() as opened:
+        yield opened
+
+
+def show(browser: Browser, path: Path, events: list[Event]) -> None:
+    path.write_text(page(path.stem, events))
+    browser.errors.clear()
+    browser.send("Page.navigate", url="about:blank")
+    browser.open(path.as_uri())
+    browser.frame()
+
+
+def joints(at_s: float, **positions: float) -> tuple[float, str, m.Message]:
+    return at_s, "arm/joints", m.JointState(0, tuple(positions), tuple(positions.values()), (), ())
+
+
+def test_joints_of_several_publishers_each_have_a_whole_curve(browser: Browser, tmp_path: Path) -> None:
+    """The names of the first message were those of all: others had no curve, or one that ended there."""
+    both = [each for i in range(10) for each in (joints(0.2 * i, left=0.1 * i), joints(0.2 * i + 0.1, right=-0.1 * i))]
+    timeline = RunTimeline()
+    show(browser, tmp_path / "joints.html", [event for each in both for event in timeline.events_of(*each)])
+    lines = "[...document.querySelectorAll('#scene .plots .trace')].map((e) => e.getAttribute('d').split('L').length)"
+    assert browser.value(lines) == [10, 10]
+    assert browser.value("[...document.querySelectorAll('#scene .plots .strong')].map((e) => e.textContent)") == [
+        "joints positions left",
+        "joints positions right",
+    ]
+    assert browser.errors == []
