@@ -1,4 +1,4 @@
-"""What no page expects: joints that not every message names."""
+"""What no page expects: joints that not every message names, an address that names no time."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ pytestmark = [
     pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),
     pytest.mark.xdist_group("browser"),
 ]
+DRIVEN = [(0.1 * i, 0.02 * i) for i in range(20)]
 
 
 @pytest.fixture(scope="module")
@@ -24,12 +25,18 @@ def browser() -> Iterator[Browser]:
         yield opened
 
 
-def show(browser: Browser, path: Path, events: list[Event]) -> None:
+def show(browser: Browser, path: Path, events: list[Event], address: str = "") -> None:
     path.write_text(page(path.stem, events))
     browser.errors.clear()
     browser.send("Page.navigate", url="about:blank")
-    browser.open(path.as_uri())
+    browser.open(path.as_uri() + address)
     browser.frame()
+
+
+def truth(places: list[tuple[float, float]]) -> list[Event]:
+    return [
+        Event(0.1 * i, "truth", {"x": x, "y": y, "phi": 0.0, "v": 0.2, "index": -1}) for i, (x, y) in enumerate(places)
+    ]
 
 
 def joints(at_s: float, **positions: float) -> tuple[float, str, m.Message]:
@@ -48,3 +55,9 @@ def test_joints_of_several_publishers_each_have_a_whole_curve(browser: Browser, 
         "joints positions right",
     ]
     assert browser.errors == []
+
+
+@pytest.mark.parametrize(("address", "shown_s"), [("#t=.5", 0.5), ("#t=1.2.3", 1.9), ("#t=.", 1.9), ("#t=-3", 0.0)])
+def test_an_address_that_names_no_time_opens_at_the_end(browser: Browser, tmp_path: Path, address, shown_s) -> None:
+    show(browser, tmp_path / "driven.html", truth(DRIVEN), address)
+    assert browser.value("Number(document.documentElement.dataset.at)") == pytest.approx(shown_s)

@@ -4,8 +4,8 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 /** The moment that the address names, as #t=4.2, seconds; null if it names none. */
 function addressed() {
-  const hash = /^#t=(-?[0-9.]+)$/.exec(location.hash);
-  return hash && Number(hash[1]);
+  const at = Number(/^#t=(-?[0-9.]+)$/.exec(location.hash)?.[1] ?? NaN);
+  return Number.isFinite(at) ? at : null;
 }
 
 class Player {
