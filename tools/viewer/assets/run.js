@@ -6,6 +6,7 @@ const SOURCES = ["truth", "believed", "seen", "odom"]; // sources of the robot's
 // events of each kind, so that a page of weeks does not grow.
 const KEEP_S = 600;
 const KEEP_EVENTS = 2000;
+const MAX_RECENT = 20_000; // of each kind, also of KEEP_S: a flood has more
 const FORGET_EVERY_S = 60;
 const PASSING = new Set(["tick", "belief", ...SOURCES, "why"]);
 const PASSING_STARTS = ["series ", "outline "];
@@ -65,7 +66,7 @@ class Run {
       const passes = PASSING.has(kind) || PASSING_STARTS.some((start) => kind.startsWith(start));
       const kept = passes ? 1 : KEEP_EVENTS; // the newest still holds, e.g. an outline
       const old = this.count(kind, this.end - KEEP_S);
-      rows.splice(0, Math.max(0, Math.min(old, rows.length - kept)));
+      rows.splice(0, Math.max(0, Math.min(old, rows.length - kept), rows.length - MAX_RECENT));
     }
   }
 

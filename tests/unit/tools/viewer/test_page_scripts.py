@@ -39,6 +39,15 @@ for (let at = 1; at < 50000; at++) {
 }
 console.log(JSON.stringify({plan: run.last("plan").status, subgoals: run.last("subgoals").number, kept: run.kept()}));
 """
+FLOOD = """
+const run = new Run();
+run.add([0, "plan", {status: "solved"}]);
+for (let i = 0; i < 100000; i++) {
+  run.add([i / 200, "estop", {number: i}]);
+  run.forget();
+}
+console.log(JSON.stringify({plan: run.last("plan").status, newest: run.last("estop").number, kept: run.kept()}));
+"""
 RESTART = """
 const made = [];
 const element = () => ({ setAttribute(name, value) { this[name] = value; }, append() {}, replaceChildren() {} });
@@ -90,6 +99,13 @@ def test_a_live_page_of_weeks_keeps_what_holds_and_does_not_grow() -> None:
     found = printed(WEEKS)
     assert (found["plan"], found["subgoals"]) == ("solved", 49_999)
     assert 2001 <= found["kept"] <= 2001 + 60
+
+
+@needs_node
+def test_a_live_page_keeps_the_newest_events_of_a_flood() -> None:
+    found = printed(FLOOD)
+    assert (found["plan"], found["newest"]) == ("solved", 99_999)
+    assert found["kept"] <= 1 + 20_000 + 60 * 200, "it forgets once a minute"
 
 
 @needs_node
