@@ -7,7 +7,7 @@ function framed(run, player) {
   document.documentElement.classList.add("framed");
   player.go = (at) => send({ go: relative(at) });
   player.key = (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || isPress(event)) return;
     if ([" ", "Home", "End"].includes(event.key) || event.key.startsWith("Arrow")) event.preventDefault();
     send({ key: { key: event.key, shiftKey: event.shiftKey } });
   };

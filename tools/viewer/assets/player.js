@@ -8,6 +8,11 @@ function addressed() {
   return Number.isFinite(at) ? at : null;
 }
 
+/** Whether a key presses what has the focus, and moves no time. */
+function isPress({ key, target }) {
+  return key === " " && ["BUTTON", "SUMMARY"].includes(target.tagName);
+}
+
 class Player {
   constructor(run, live) {
     this.run = run;
@@ -160,7 +165,7 @@ class Player {
       l: () => this.live && this.catchUp(),
     };
     const action = actions[event.key];
-    const pressed = event.key === " " && event.target.tagName === "BUTTON" && event.target !== this.button;
+    const pressed = isPress(event) && event.target !== this.button;
     if (!action || pressed || event.target.tagName === "SELECT") return;
     event.preventDefault();
     action();
