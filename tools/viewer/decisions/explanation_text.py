@@ -91,7 +91,8 @@ def certified_gap_pct(report: RefinementReport | None, chosen_cost: float) -> fl
     """
     if report is None or report.gap_pct < 0 or not 0 < report.best_s < math.inf or not math.isfinite(chosen_cost):
         return None
-    return max(0.0, 100 * (chosen_cost / report.best_s * (1 + report.gap_pct / 100) - 1))
+    gap_pct = 100 * (chosen_cost / report.best_s * (1 + report.gap_pct / 100) - 1)
+    return max(0.0, gap_pct) if math.isfinite(gap_pct) else None  # a damaged message has anything
 
 
 def certificate_text(gap_pct: float | None, not_certified: str) -> str:

@@ -87,6 +87,7 @@ def test_a_choice_that_is_not_the_best_of_its_search_is_certified_for_what_it_co
     assert certified_gap_pct(certificate, 8.4) == pytest.approx(100 * (1.05 * 1.01 - 1))
     assert certified_gap_pct(certificate, float("inf")) is None
     assert certified_gap_pct(dataclasses.replace(certificate, best_s=0.0), 8.4) is None
+    assert certified_gap_pct(dataclasses.replace(certificate, best_s=5e-324), 8.4) is None, "no number of JSON"
     assert certified_gap_pct(None, 8.4) is None
 
 
