@@ -13,16 +13,23 @@ class ChoicePanel {
     const [subgoals, report] = [this.run.last("subgoals", at), this.run.last("refinement", at)];
     const why = this.run.last("why", at);
     const fitting = why && subgoals && why.at === subgoals.at ? why : null;
-    const key = [subgoals?.at, report?.at, report?.evaluations, fitting?.at, this.picked].join(" ");
+    this.panel.note.textContent = report ? this.search(report) : "";
+    // Not of the report, which comes with each tick of a search: a new button on each could not be pressed.
+    const key = [subgoals?.at, fitting?.at, this.picked, subgoals && this.firstIndex(subgoals.at)].join(" ");
     if (key === this.drawn) return;
     this.drawn = key;
     this.again = () => {
       this.drawn = "";
       this.show(at);
     };
-    this.panel.note.textContent = report ? this.search(report) : "";
+    const focused = this.buttons().indexOf(document.activeElement);
     if (!subgoals) this.panel.body.replaceChildren(html("p", { class: "empty", text: "No subgoals yet." }));
     else this.panel.body.replaceChildren(...(fitting ? this.explained(fitting) : this.listed(subgoals)));
+    this.buttons()[focused]?.focus();
+  }
+
+  buttons() {
+    return [...this.panel.body.querySelectorAll("button")];
   }
 
   search(report) {

@@ -7,9 +7,12 @@ class Series {
     this.run = run;
     this.panel = target;
     this.drawn = -1;
+    [this.believed, this.rest, this.summary] = [html("div"), html("div"), html("summary")];
+    this.more = html("details", {}, this.summary, this.rest); // stays: a new one on each event could not be clicked at
   }
 
   show(at, view) {
+    if (!this.more.isConnected) this.panel.body.replaceChildren(this.believed, this.more);
     this.episode = this.run.episode(at);
     const key = `${this.run.version} ${view[0]} ${view[1]} ${this.episode[0]}`;
     if (this.drawn !== key) {
@@ -22,17 +25,12 @@ class Series {
   lay(view) {
     const [beliefs, others] = [this.beliefs(), this.others()].map((lines) => lines.map((line) => timePlot(line, view)));
     this.plots = [...beliefs, ...others];
-    const wasOpen = this.panel.body.querySelector("details")?.open ?? false;
-    const more = html(
-      "details",
-      wasOpen ? { open: "" } : {},
-      html("summary", { text: `${others.length} more: sensors and commands` }),
-      plotGrid(others),
+    this.believed.replaceChildren(
+      beliefs.length ? plotGrid(beliefs) : html("p", { class: "empty", text: "No numbers yet." }),
     );
-    const empty = html("p", { class: "empty", text: "No numbers yet." });
-    this.panel.body.replaceChildren(
-      ...[beliefs.length ? plotGrid(beliefs) : empty, others.length ? more : null].filter(Boolean),
-    );
+    this.summary.textContent = `${others.length} more: sensors and commands`;
+    this.rest.replaceChildren(plotGrid(others));
+    this.more.hidden = others.length === 0;
     this.panel.title.textContent = "State";
     this.panel.note.textContent = beliefs.length
       ? "believed values; dots: goals of the actions at their end, hollow: free parameters"

@@ -1,0 +1,141 @@
+"""What is pressed, by pointer or space bar: also on a live page, which draws anew while the pointer is down."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tailor.tools.viewer.explainer import Explainer
+from tailor.tools.viewer.live.broadcast import EventBroadcast
+from tailor.tools.viewer.live.server import serving
+from tailor.tools.viewer.page import page
+from tailor.tools.viewer.recorded_events import recorded_events
+from tailor.tools.viewer.side_by_side import side_by_side
+from tailor.tools.viewer.timeline import Event, RunTimeline
+from tests.support import synthetic_run
+from tests.support.browser import PROGRAM, Browser
+from tests.support.bus_system import ROOT
+
+pytestmark = [
+    pytest.mark.skipif(PROGRAM is None, reason="no chromium here: install Debian's package chromium"),
+    pytest.mark.xdist_group("browser"),
+]
+DOWN_S = 0.12  # of a button of a mouse
+PLAY = "document.querySelector('.play').textContent"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with Browser() as opened:
+        yield opened
+
+
+@pytest.fixture
+def rows() -> list[Event]:
+    """Of an arm, whose page has a part that opens, with a joint that moves."""
+    timeline = RunTimeline()
+    events = [row for t in synthetic_run.arm_run() for row in timeline.events_of(t.time_ns / 1e9, t.key, t.message)]
+    return [*events, *[Event(0.1 * i, "series joints", {"pan": 0.1 * i}) for i in range(10)]]
+
+
+def show(browser: Browser, path: Path, text: str) -> None:
+    path.write_text(text)
+    browser.errors.clear()
+    browser.send("Page.navigate", url="about:blank")
+    browser.open(f"{path.as_uri()}#t=1")
+    browser.frame()
+
+
+@pytest.mark.parametrize(
+    ("selector", "pressed"),
+    [
+        ("summary", "document.querySelector('details').open"),
+        ("#plan .fold", "document.querySelector('#plan').classList.contains('folded')"),
+    ],
+)
+def test_what_opens_and_folds_is_pressed_and_nothing_plays(browser: Browser, tmp_path, rows, selector, pressed) -> None:
+    show(browser, tmp_path / "arm.html", page("arm", rows))
+    browser.value(f"document.querySelector({selector!r}).focus()")
+    browser.press(" ")
+    assert (browser.value(pressed), browser.value(PLAY)) == (True, "▶")
+    assert browser.errors == []
+
+
+def test_a_framed_page_is_pressed_as_one_that_stands_alone(browser: Browser, tmp_path, rows) -> None:
+    show(browser, tmp_path / "runs.html", side_by_side("runs", "", {"a": rows, "b": rows}))
+    inside = "document.querySelector('iframe').contentDocument.querySelector('#plan{}')"
+    browser.value(f"{inside.format(' .fold')}.focus()")
+    browser.press(" ")
+    assert browser.value(f"{inside.format('')}.classList.contains('folded')")
+    assert browser.value(PLAY) == "▶"
+    browser.value("document.activeElement.blur()")
+    browser.press(" ")
+    browser.wait(f"{PLAY} !== '▶'")
+    assert browser.errors == []
+
+
+@contextmanager
+def live(browser: Browser, events: list[Event], more: Callable[[int], Event]) -> Iterator[None]:
+    """A live page of a run that goes on: 20 more events a second."""
+    broadcast, ended = EventBroadcast(), threading.Event()
+
+    def feed() -> None:
+        for number in range(100_000):
+            broadcast.publish([more(number)])
+            if ended.wait(0.05):
+                return
+
+    with serving(page("live", [], live=True), broadcast, 0) as port:
+        browser.open(f"http://127.0.0.1:{port}/")
+        broadcast.publish(events)
+        feeder = threading.Thread(target=feed)
+        feeder.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            feeder.join()
+    browser.errors.clear()  # of the server that is gone
+
+
+def press(browser: Browser, selector: str) -> None:
+    """A click as people click: the button of the mouse is down for a while."""
+    browser.wait(f"document.querySelector({selector!r})?.getClientRects().length")
+    box = f"document.querySelector({selector!r}).getBoundingClientRect()"
+    x, y = browser.value(f"(({{left, top, height}}) => [left + 20, top + height / 2])({box})")
+    for kind in ("mousePressed", "mouseReleased"):
+        browser.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+        time.sleep(DOWN_S)
+
+
+def test_a_part_of_a_live_page_opens_and_keeps_the_focus(browser: Browser, rows) -> None:
+    with live(browser, rows, lambda i: Event(12.0 + 0.05 * i, "series joints", {"pan": 0.1 * i})):
+        press(browser, "summary")
+        browser.wait("document.querySelector('details').open")
+        version = browser.value("document.documentElement.dataset.rows")
+        browser.wait(f"document.documentElement.dataset.rows > {version} + 5")
+        assert browser.value("document.activeElement.tagName") == "SUMMARY"
+
+
+def test_alternatives_are_chosen_while_a_search_goes_on(browser: Browser) -> None:
+    run = ROOT / "tests" / "data" / "golden" / "soccer-approach-dribble.mcap"
+    events = list(recorded_events(run, RunTimeline(Explainer())))
+    until_s = next(event.at_s for event in events if event.kind == "why")
+    report = next(event.fields for event in events if event.kind == "refinement")
+    known = [event for event in events if event.at_s <= until_s]
+    with live(
+        browser,
+        known,
+        lambda i: Event(until_s + 0.1 * i, "refinement", {**report, "evaluations": i, "finished": False}),
+    ):
+        second = ".chips button:nth-child(2)"
+        assert browser.value(f"document.querySelector({second!r})?.ariaPressed ?? 'false'") == "false"
+        press(browser, second)
+        browser.wait(f"document.querySelector({second!r}).ariaPressed === 'true'")
+        assert browser.value(f"document.activeElement === document.querySelector({second!r})")
+        browser.wait("/: [0-9]{2,} evaluations/.test(document.querySelector('#choice small').textContent)")
