@@ -103,14 +103,24 @@ def live(browser: Browser, events: list[Event], more: Callable[[int], Event]) ->
     browser.errors.clear()  # of the server that is gone
 
 
-def press(browser: Browser, selector: str) -> None:
-    """A click as people click: the button of the mouse is down for a while."""
-    browser.wait(f"document.querySelector({selector!r})?.getClientRects().length")
-    box = f"document.querySelector({selector!r}).getBoundingClientRect()"
-    x, y = browser.value(f"(({{left, top, height}}) => [left + 20, top + height / 2])({box})")
-    for kind in ("mousePressed", "mouseReleased"):
-        browser.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
-        time.sleep(DOWN_S)
+def middle(browser: Browser, selector: str) -> list[float]:
+    """Where an element is in the window, once it is there."""
+    element = f"document.querySelector({selector!r})"
+    browser.wait(f"{element}?.getClientRects().length")
+    browser.value(f"{element}.scrollIntoView({{block: 'center'}})")
+    browser.frame()
+    box = f"{element}.getBoundingClientRect()"
+    return browser.value(f"(({{left, top, width, height}}) => [left + width / 2, top + height / 2])({box})")
+
+
+def press(browser: Browser, selector: str, times: int = 1) -> None:
+    """Clicks as people click: the button of the mouse is down for a while."""
+    x, y = middle(browser, selector)
+    for click in range(times):
+        for kind in ("mousePressed", "mouseReleased"):
+            about = {"x": x, "y": y, "button": "left", "buttons": 1, "clickCount": click + 1}
+            browser.send("Input.dispatchMouseEvent", type=kind, **about)
+            time.sleep(DOWN_S)
 
 
 def test_a_part_of_a_live_page_opens_and_keeps_the_focus(browser: Browser, rows) -> None:
@@ -139,3 +149,15 @@ def test_alternatives_are_chosen_while_a_search_goes_on(browser: Browser) -> Non
         browser.wait(f"document.querySelector({second!r}).ariaPressed === 'true'")
         assert browser.value(f"document.activeElement === document.querySelector({second!r})")
         browser.wait("/: [0-9]{2,} evaluations/.test(document.querySelector('#choice small').textContent)")
+
+
+def test_a_double_click_on_the_timeline_of_a_live_page_shows_all_of_it_again(browser: Browser, rows) -> None:
+    first = "parseFloat(document.querySelector('#timeline svg > g:first-of-type text').textContent)"
+    with live(browser, rows, lambda i: Event(12.0 + 0.05 * i, "series joints", {"pan": 0.1 * i})):
+        browser.wait(f"Number(document.documentElement.dataset.at) > 12 && {first} === 0")
+        x, y = middle(browser, ".hit")
+        for _ in range(4):
+            browser.send("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-100, modifiers=8)
+        browser.wait(f"{first} > 1")
+        press(browser, ".hit", times=2)
+        browser.wait(f"{first} === 0")

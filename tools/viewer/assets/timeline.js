@@ -9,6 +9,7 @@ class Timeline {
     this.player = player;
     this.window = null; // [from, to] when zoomed
     this.drawn = "";
+    this.listen(this.panel.body);
   }
 
   /** The stretch of time that is shown; a live page shows the last minute. */
@@ -48,15 +49,14 @@ class Timeline {
     ]);
     this.hand = html("div", { class: "hand" }); // above the drawing, which need not be painted again when it moves
     const hit = svg("rect", { class: "hit", x: x.low, y: 0, width: x.high - x.low, height: top });
-    const drawing = svg(
+    this.drawing = svg(
       "svg",
       { viewBox: `0 0 ${this.width} ${top + 16}`, role: "img", "aria-label": "the run over time" },
       svg("g", {}, ...axis),
       hit,
       ...parts,
     );
-    this.listen(drawing);
-    this.panel.body.replaceChildren(html("div", { class: "layers" }, drawing, this.hand));
+    this.panel.body.replaceChildren(html("div", { class: "layers" }, this.drawing, this.hand));
     this.panel.note.replaceChildren(`${this.summary()} `, this.outcomes());
   }
 
@@ -134,23 +134,26 @@ class Timeline {
     return `${rows.length} ticks · work p50 ${ms(quantile(work, 0.5))}, p99 ${ms(quantile(work, 0.99))} · late p99 ${ms(quantile(late, 0.99))}, max ${ms(quantile(late, 1))} · ${missed} missed`;
   }
 
-  listen(drawing) {
+  /** Listen on the panel, which stays: a live page draws anew between a press and the next, so without a dblclick. */
+  listen(body) {
     const at = (event) => {
-      const box = drawing.getBoundingClientRect();
+      const box = this.drawing.getBoundingClientRect();
       return this.x.invert(((event.clientX - box.left) / box.width) * this.width);
     };
-    drawing.addEventListener("pointerdown", (event) => {
+    body.addEventListener("pointerdown", (event) => {
       this.dragging = true;
       this.player.go(at(event));
     });
-    drawing.addEventListener("pointermove", (event) => {
+    body.addEventListener("pointermove", (event) => {
       if (this.dragging && event.buttons) this.player.go(at(event));
     });
-    drawing.addEventListener("dblclick", () => {
+    const showAll = () => {
       this.window = null;
       this.player.refresh();
-    });
-    drawing.addEventListener(
+    };
+    body.addEventListener("dblclick", showAll);
+    body.addEventListener("mousedown", ({ detail }) => detail === 2 && showAll()); // without a dblclick, see above
+    body.addEventListener(
       "wheel",
       (event) => {
         if (!event.ctrlKey && !event.shiftKey) return; // plain scrolling stays the page's
