@@ -1,5 +1,6 @@
 // A plan as a graph: steps from top to bottom, causal links solid with what they carry, bare orderings dashed.
 
+const SIGNS = { done: "m0 0l2.5 3l4 -6.5", running: "m0 -4l6 4l-6 4z" }; // a tick, a triangle: not all see colours
 const GRAPH = { width: 560, row: 74, tight: 52, node: 26, glyph: 6.7, many: 6 };
 
 /** Where each node stands, by id (0: the initial state, "goal"): levels by the longest way from the start. */
@@ -36,13 +37,19 @@ function layOut(plan) {
   return places;
 }
 
+/** How far a node is: running, done or neither. */
+function stateOf(id, done, running) {
+  return id === running ? "running" : done.has(id) ? "done" : "";
+}
+
 function nodePart(place, done, running) {
-  const kind = place.id === running ? "node running" : done.has(place.id) ? "node done" : "node";
-  const y = place.y;
+  const state = stateOf(place.id, done, running);
+  const [x, y] = [place.x - place.width / 2, place.y];
   return svg(
     "g",
-    { class: kind, "data-step": place.id },
-    svg("rect", { x: place.x - place.width / 2, y, width: place.width, height: GRAPH.node, rx: 6 }),
+    { class: `node ${state}`.trim(), "data-step": place.id },
+    svg("rect", { x, y, width: place.width, height: GRAPH.node, rx: 6 }),
+    state ? svg("path", { class: "sign", d: `M${x + 4} ${y + GRAPH.node / 2}${SIGNS[state]}` }) : null,
     svg("text", {
       class: "ink",
       x: place.x,

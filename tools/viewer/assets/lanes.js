@@ -22,6 +22,8 @@ function actionLane(run, x, top) {
     const outcome = action.ended?.outcome ?? "done";
     const kind = outcome === "done" ? "actual" : outcome === "aborted" ? "actual aborted" : "actual failed";
     parts.push(bar(kind, action.until, top + 27));
+    const bars = parts.splice(-2);
+    if (outcome !== "done" && outcome !== "aborted") bars.push(cross(Math.min(x.high, right), right - left, top + 31.5));
     const words = action.ended
       ? `${action.action}  ${action.ended.actual.toFixed(1)} s (${signed(action.ended.actual - action.predicted)})`
       : action.action;
@@ -38,11 +40,18 @@ function actionLane(run, x, top) {
           text: `${action.action}: predicted ${seconds(action.predicted)}, actual ${seconds(action.until - action.begin)}${reason}`,
         }),
         label,
-        ...parts.splice(-2),
+        ...bars,
       ),
     );
   }
   return parts;
+}
+
+/** A cross at the end of a bar, which is as red as it: whoever sees no colours knows a failure by it. */
+function cross(end, width, y) {
+  const fits = width > 14;
+  const px = end - (fits ? 7 : width / 2);
+  return svg("path", { class: fits ? "cross" : "cross narrow", d: `M${px - 3} ${y - 3}l6 6M${px - 3} ${y + 3}l6 -6` });
 }
 
 /** What happened when: decisions (diamond), plans (square), changes of mode (line). */

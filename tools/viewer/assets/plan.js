@@ -67,7 +67,7 @@ class PlanGraph {
       {
         viewBox: `0 0 ${GRAPH.width} ${height}`,
         role: "img",
-        "aria-label": "the plan's steps with causal links and orderings",
+        "aria-label": `the plan's steps with causal links and orderings: ${spoken(places, done, running)}`,
       },
       svg("defs", {}, ...["link", "start", "ordering"].map(arrowHead)),
       ...linkParts(base, places),
@@ -86,4 +86,10 @@ class PlanGraph {
     const below = node.getBoundingClientRect().top - body.getBoundingClientRect().top;
     body.scrollTop += below - body.clientHeight / 2;
   }
+}
+
+/** The nodes of a plan in words, with how far they are. */
+function spoken(places, done, running) {
+  const words = ({ id, words }) => [words, stateOf(id, done, running)].filter(Boolean).join(", ");
+  return [...places.values()].map(words).join("; ");
 }
