@@ -13,6 +13,7 @@ from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.schemas.packages.pose3 import Pose3
 from tailor.schemas.packages.scene import Scene
 from tailor.schemas.reason_text import reason_text, result_text
+from tailor.schemas.topics import STALE_S
 from tailor.tools.scenes.driver_starts import DriverStarts
 from tailor.tools.scenes.flat import Outline, flat, projected
 from tailor.tools.scenes.robot_scenes import TRUTH_KEYS, RobotScenes, planar_pose
@@ -23,6 +24,7 @@ from tailor.tools.viewer.plan_graph import plan_graph
 from tailor.tools.viewer.run_facts import run_facts
 from tailor.tools.viewer.silence import Silence
 
+PAUSE_S = 2 * STALE_S  # of all messages at once; in a shorter one it may be the recorder that stood still
 STATE_GAP_S = 0.06  # passes 10 Hz with jitter and thins out faster samples
 # Other messages that have no event of their own become plain series of numbers.
 NOT_SHOWN = (m.ArmRequest, m.PlanRequest, m.PlanAnswer, m.SceneShapes, m.FrameTransforms, m.LogLine)
@@ -66,6 +68,7 @@ class RunTimeline:
         self._explainer = explainer
         self._scenes = RobotScenes()
         self._silence = Silence()
+        self._received_s = 0.0  # time of the last message
         self._starts = DriverStarts()
         self._action_index = -1  # of the action in execution
         self._last: dict[str, Any] = {}  # by kind: last fields of states; by key: last reports
@@ -88,18 +91,24 @@ class RunTimeline:
         owner, _, topic = key.partition("/")
         if topic and self.robot and owner not in ("exec", self.robot):
             return []
+        silences = self._silences_before(at_s)
         self._silence.note(message, at_s)
+        silences += self.silences(at_s)
         if isinstance(message, REPORTS):
             if self._last.get(key) == message:
-                return self.silences(at_s)
+                return silences
             self._last[key] = message
-        events = [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
-        return self.silences(at_s) + events
+        return silences + [Event(at_s, kind, fields) for kind, fields in self._rows(at_s, key, message)]
 
     def silences(self, at_s: float) -> list[Event]:
         """An event if executive or driver have fallen silent by now, or are heard again."""
         silent = self._silence.change(at_s)
         return [] if silent is None else [Event(at_s, "silent", silent)]
+
+    def _silences_before(self, at_s: float) -> list[Event]:
+        """An event if before this time no message at all came for long: then every part had fallen silent."""
+        last_s, self._received_s = self._received_s, at_s
+        return self.silences(last_s + STALE_S + 1e-3) if at_s - last_s > PAUSE_S else []
 
     def _rows(self, at_s: float, key: str, message: m.Message) -> Rows:
         match message:

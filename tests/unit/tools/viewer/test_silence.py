@@ -30,6 +30,16 @@ def test_without_any_message_time_alone_reveals_the_silence_of_both() -> None:
     assert timeline.silences(10.0) == [], "once"
 
 
+def test_both_are_silent_in_a_recording_while_it_has_no_message_at_all() -> None:
+    """The first message after it came too late to tell, and that of the driver told nothing of the driver."""
+    both = [(0.0, "exec/status", STATUS), (0.2, "agilo/driver", DRIVER)]
+    events = silent_events(RunTimeline(), *both, (25.0, "agilo/driver", DRIVER), (25.1, "exec/status", STATUS))
+    (begin_s, silent), *others = events
+    assert 0.2 + STALE_S < begin_s < 0.2 + STALE_S + 0.05
+    assert silent == {"executive": 0.0, "driver": 0.2}
+    assert others == [(25.0, {"executive": 0.0}), (25.1, {})]
+
+
 def test_what_was_never_heard_is_not_silent() -> None:
     assert RunTimeline().silences(99.0) == []
 
