@@ -15,7 +15,7 @@ class Heading {
 
   show(at) {
     this.damage.textContent = this.run.last("damage")?.text ?? "";
-    const [about, state, belief] = [this.run.about(), this.run.last("state", at), this.run.last("belief", at)];
+    const [about, state, belief] = [this.run.about(at), this.run.last("state", at), this.run.last("belief", at)];
     const action = this.run.last("action", at);
     const facts = [
       about.domain,

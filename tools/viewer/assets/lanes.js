@@ -70,19 +70,14 @@ function eventLane(run, x, top) {
   ];
 }
 
-/** Curves with an axis: [{points: [[at, value]], kind}]. */
+/** Curves with an axis: [{points: [[at, value]], kind, whole: see `curveOf`}]. */
 function curveLane(x, top, height, lines, [low, high], unit) {
   const y = scale(low, high, top + height - 4, top + 8);
   const labels = ticks(low, high, 3).flatMap((v) => [
     svg("line", { class: "grid", x1: x.low, x2: x.high, y1: y(v), y2: y(v) }),
     svg("text", { x: x.low - 6, y: y(v) + 4, "text-anchor": "end", text: String(v) }),
   ]);
-  const curves = lines.map((line) =>
-    svg("path", {
-      class: line.kind,
-      d: through(outermost(line.points, x).map((p) => (p[1] === null ? null : [x(p[0]), y(p[1])]))),
-    }),
-  );
+  const curves = lines.map(({ kind, points, whole }) => svg("path", { class: kind, d: curveOf(points, x, y, whole) }));
   return [...labels, svg("text", { x: x.high + 6, y: top + 14, text: unit }), ...curves];
 }
 

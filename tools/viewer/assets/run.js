@@ -115,8 +115,9 @@ class Run {
     return rows.find((row) => row.index >= 0)?.at ?? Infinity;
   }
 
-  about() {
-    return this.last("about") ?? {};
+  /** Facts of the executive that ran at a time; before the first one, its. */
+  about(at = Infinity) {
+    return this.last("about", at) ?? this.all("about")[0] ?? {};
   }
 
   /** The best source of the robot's pose on the plane, or null without one. */

@@ -1,5 +1,8 @@
 // Numbers to pixels, and round numbers to label them with.
 
+const PAUSE_S = 1; // of a curve: longer, and many times as long as between its other points
+const PAUSE_STEPS = 10;
+
 /** A linear map from [from, to] to [low, high]. */
 function scale(from, to, low, high) {
   const factor = to === from ? 0 : (high - low) / (to - from);
@@ -89,4 +92,25 @@ function outermost(points, x) {
   }
   close();
   return kept;
+}
+
+/** Points with a null between two that are far apart in time: what was meanwhile is not known. */
+function interrupted(points, whole) {
+  const steps = points.slice(1).map(([at], i) => at - points[i][0]);
+  const pause = Math.max(PAUSE_S, PAUSE_STEPS * quantile(steps, 0.5));
+  return points.flatMap((point, i) => {
+    const before = points[i - 1];
+    const joined = i === 0 || steps[i - 1] <= pause || (!whole && point[1] === before[1]);
+    return joined ? [point] : [[(before[0] + point[0]) / 2, null], point];
+  });
+}
+
+/**
+ * A path through the shown points [at, value], interrupted where they pause. Between equal ones it is not, since those
+ * that repeat their neighbours may be left out (columns.py), unless there is the `whole` of them.
+ */
+function curveOf(points, x, y, whole = false) {
+  const shown = points.filter(([at]) => x.shows(at));
+  const kept = outermost(interrupted(shown, whole), x);
+  return through(kept.map(([at, value]) => (value === null ? null : [x(at), y(value)])));
 }

@@ -105,7 +105,7 @@ function timePlot(line, [from, to]) {
       svg("line", { class: "grid", x1: PLOT.left, x2: PLOT.width - PLOT.right, y1: y(v), y2: y(v) }),
       svg("text", { x: PLOT.left - 4, y: y(v) + 3.5, "text-anchor": "end", text: String(v) }),
     ]),
-    svg("path", { class: "trace c0", d: through(outermost(seen, x).map(([at, value]) => [x(at), y(value)])) }),
+    svg("path", { class: "trace c0", d: curveOf(seen, x, y) }),
     ...line.goals
       .filter(([at]) => at >= from && at <= to)
       .map(([at, value, bound]) => svg("circle", { class: bound ? "dot" : "dot lone", cx: x(at), cy: y(value), r: 3 })),

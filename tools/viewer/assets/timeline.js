@@ -96,7 +96,7 @@ class Timeline {
             x,
             top,
             42,
-            [{ points: checks, kind: "trace c2" }],
+            [{ points: checks, kind: "trace c2", whole: true }],
             [
               0,
               Math.max(
