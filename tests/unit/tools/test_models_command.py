@@ -145,6 +145,14 @@ def test_what_a_card_holds_reaches_no_terminal_unescaped(tmp_path: Path, capsys)
     assert "\x1b" not in output
 
 
+def test_what_is_no_number_of_json_is_null(tmp_path: Path, capsys) -> None:
+    """Python writes and reads NaN, and no other parser does."""
+    changed(copied(tmp_path) / "duration.card.json", note=[float("nan"), float("inf"), 1.5])
+    assert main(["models", "show", "agilo/goToPose", "--zoo", str(tmp_path), "--json"]) == 0
+    card = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert card["note"] == [None, None, 1.5]
+
+
 def test_hidden_files_beside_models_are_none(tmp_path: Path, capsys) -> None:
     (copied(tmp_path) / "._duration.onnx").touch()
     assert main(["models", "list", "--zoo", str(tmp_path), "--json"]) == 0

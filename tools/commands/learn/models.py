@@ -184,7 +184,8 @@ def _list(cards: list[Card], as_json: bool) -> None:
 def _show(cards: list[Card], as_json: bool) -> None:
     """Print cards, with --json as one value: that of a single model, or a list."""
     if as_json:
-        print(json.dumps(cards[0] if len(cards) == 1 else cards))
+        written = json.dumps(cards[0] if len(cards) == 1 else cards)
+        print(json.dumps(json.loads(written, parse_constant=lambda _: None)))  # of one made by hand: NaN is no JSON
         return
     console = Console(highlight=False)
     for card in cards:
