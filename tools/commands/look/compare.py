@@ -38,15 +38,15 @@ def run(arguments: argparse.Namespace) -> int:
         require("plots")
     a, b = compared_run(arguments.first), compared_run(arguments.second)
     comparison = _comparison(a, b)
-    if arguments.json:
-        print(json.dumps(comparison))
-    else:
-        _show(a, b, comparison)
-    if arguments.plot:
+    if arguments.plot:  # first: a command that fails has no result
         from tailor.tools.figures.comparison_plot import draw_comparison
 
         with whole_output(arguments.plot) as picture:
             draw_comparison(replace(a, name=plain(a.name)), replace(b, name=plain(b.name)), picture)
+    if arguments.json:
+        print(json.dumps(comparison))
+    else:
+        _show(a, b, comparison)
     return 0 if comparison["equal"] else 1
 
 

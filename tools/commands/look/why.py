@@ -51,10 +51,10 @@ def run(arguments: argparse.Namespace) -> int:
             _show(explained)
         if output is not None and explained.explanation is not None:
             drawn.append((explained.title, explained.explanation))
-    if arguments.json:
-        print(json.dumps(values, allow_nan=False))
     if output is not None and drawn:
         _draw(drawn, output)
+    if arguments.json:  # last: a command that fails has no result
+        print(json.dumps(values, allow_nan=False))
     return 0 if free else 1
 
 

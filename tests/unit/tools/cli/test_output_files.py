@@ -58,6 +58,18 @@ def test_a_full_disk_is_named_in_one_line_and_takes_no_file_of_the_user(words, n
     assert list(tmp_path.iterdir()) == [output]
 
 
+@pytest.mark.parametrize(
+    "words",
+    [("compare", GOLDEN, GOLDEN, "--json", "--plot"), ("why", CHOICES, "--at", "2", "--json", "-o")],
+    ids=" ".join,
+)
+def test_a_command_whose_picture_cannot_be_written_prints_no_result(words, tmp_path, capsys):
+    """It printed the JSON of a success, and then failed."""
+    (tmp_path / "file").touch()
+    assert main([*words, str(tmp_path / "file" / "x.png")]) == 2
+    assert capsys.readouterr().out == ""
+
+
 def letter():
     ways = np.zeros((3, 2))
     times = np.arange(3.0)
