@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,7 +48,8 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
       sender: Skip executives whose id does not begin with this.
 
     Raises:
-      UsageError: The file is no recording, has no such decision, or its models are not installed.
+      UsageError: The file is no recording, has no such decision, or the models of no run in it are installed; a line
+        names other runs whose models are not.
     """
     reader = DecisionReader()
     found = reader.decisions(timed(recording, sender, read=lambda damage: warn(recording, damage)))
@@ -61,14 +62,26 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
         raise UsageError(f"{recording}: {_no_decision(reader, at_s)}")
     explainer = Explainer()
     owners = {reader.provenance_of(each): each.sender[:SHOWN_DIGITS] for each in decisions}
-    for provenance, owner in owners.items():
-        explainer.load(provenance)
-        if explainer.missing:
-            which = f" of executive {owner} (--sender shows another alone)" if len(owners) > 1 else ""
-            raise UsageError(f"{recording}: cannot load its domain and models{which}: {explainer.missing}")
+    missing = _missing(recording, explainer, owners)
+    decisions = [each for each in decisions if reader.provenance_of(each) not in missing]
+    if not decisions:
+        raise UsageError(next(iter(missing.values())))
+    for error in missing.values():
+        print(plain(error), file=sys.stderr)
     if at_s is not None and (ended := ended_text(reader, decisions[0], at_s)):
         print(plain(f"{recording}: {ended}"), file=sys.stderr)
     return (_explained(explainer, decision, reader.provenance_of(decision)) for decision in decisions)
+
+
+def _missing(recording: Path, explainer: Explainer, owners: Mapping[str, str]) -> dict[str, str]:
+    """Errors of the runs whose domain or models cannot be loaded, by provenance; `owners`: executives, likewise."""
+    missing = {}
+    for provenance, owner in owners.items():
+        explainer.load(provenance)
+        if explainer.missing:
+            which = f" of executive {owner}" if len(owners) > 1 else ""
+            missing[provenance] = f"{recording}: cannot load its domain and models{which}: {explainer.missing}"
+    return missing
 
 
 def _no_decision(reader: DecisionReader, at_s: float | None) -> str:

@@ -11,7 +11,9 @@ import pytest
 from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas import messages as m
+from tailor.schemas.errors import UsageError
 from tailor.tools.commands.look import why
+from tailor.tools.viewer import explainer
 from tailor.tools.viewer.decisions.decision_reader import DecisionReader, executed, in_force
 from tailor.tools.viewer.decisions.explained_decisions import ExplainedDecision, ended_text, explained_decisions
 from tailor.tools.viewer.decisions.explanation_text import certificate_text, certified_gap_pct
@@ -144,10 +146,9 @@ def test_a_time_after_the_action_of_a_decision_has_none_in_force() -> None:
     assert [ended_text(reader, decision, at_s) for at_s in (1.0, 3.9, 4.04, 9.0)] == ["", "", "", ended]
 
 
-def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tmp_path: Path) -> None:
-    """The second was judged by the models of the first: nothing seemed to be free in a run of another domain."""
-    path, golden = tmp_path / "two.mcap", ROOT / "tests" / "data" / "golden"
-    writer = McapWriter(path, {})
+def two_runs(path: Path) -> Path:
+    """A recording of a run of soccer and then one of the arm."""
+    golden, writer = ROOT / "tests" / "data" / "golden", McapWriter(path, {})
     for number, name in enumerate(("soccer-approach-dribble", "arm-word-I")):
         for recorded in open_recording(golden / f"{name}.mcap").messages():
             own = (("sender", f"{number + 1}{recorded.sender[1:]}"), ("key", recorded.key))
@@ -156,9 +157,37 @@ def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tm
             sent = (recorded.log_ns + later_ns, recorded.data, recorded.publish_ns + later_ns, recorded.sequence)
             writer.copy(recorded.key, declared, sent)
     writer.close()
-    explained = list(explained_decisions(path))
-    names = [each.decision.subgoals.actions[0].action for each in explained if each.explanation is not None]
-    assert names == ["approachBall", "reach", "reach", "reach"]
+    return path
+
+
+def explained_names(path: Path) -> list[str]:
+    explained = explained_decisions(path)
+    return [each.decision.subgoals.actions[0].action for each in explained if each.explanation is not None]
+
+
+def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tmp_path: Path) -> None:
+    """The second was judged by the models of the first: nothing seemed to be free in a run of another domain."""
+    assert explained_names(two_runs(tmp_path / "two.mcap")) == ["approachBall", "reach", "reach", "reach"]
+
+
+def test_a_run_without_its_models_is_named_and_the_other_one_explained(tmp_path: Path, monkeypatch, capsys) -> None:
+    path, rebuild = two_runs(tmp_path / "two.mcap"), explainer.rebuild_context
+
+    def without(*domains: str):
+        def rebuilt(provenance, load):
+            if provenance["config"]["domain"] in domains:
+                raise UsageError("no models")
+            return rebuild(provenance, load)
+
+        monkeypatch.setattr(explainer, "rebuild_context", rebuilt)
+
+    without("soccer")
+    assert explained_names(path) == ["reach", "reach", "reach"]
+    error = f"{path}: cannot load its domain and models of executive 1{'0' * 7}: no models\n"
+    assert capsys.readouterr().err == error
+    without("soccer", "arm")
+    with pytest.raises(UsageError, match="of executive 10000000: no models"):
+        explained_decisions(path)
 
 
 def test_names_in_a_recording_are_neither_markup_nor_control_characters(capsys) -> None:
