@@ -57,6 +57,16 @@ def test_joints_of_several_publishers_each_have_a_whole_curve(browser: Browser, 
     assert browser.errors == []
 
 
+@pytest.mark.parametrize("counts", [(2, 1), (1, 2)])
+def test_beliefs_of_runs_that_believe_more_or_less_are_each_drawn(browser: Browser, tmp_path: Path, counts) -> None:
+    """The page stood still where a second run has fewer values; where it has more, only the first ones were drawn."""
+    believed = [{"elapsed": 0.0, "predicted": 1.0, "values": [0.1 * i] * counts[i // 10]} for i in range(20)]
+    show(browser, tmp_path / "beliefs.html", [Event(0.1 * i, "belief", each) for i, each in enumerate(believed)])
+    assert browser.value("document.querySelectorAll('#scene .plots .trace').length") == 2
+    assert browser.value("document.querySelector('output').textContent") == "1.9 of 1.9 s"
+    assert browser.errors == []
+
+
 @pytest.mark.parametrize(("address", "shown_s"), [("#t=.5", 0.5), ("#t=1.2.3", 1.9), ("#t=.", 1.9), ("#t=-3", 0.0)])
 def test_an_address_that_names_no_time_opens_at_the_end(browser: Browser, tmp_path: Path, address, shown_s) -> None:
     show(browser, tmp_path / "driven.html", truth(DRIVEN), address)

@@ -45,10 +45,10 @@ class Series {
   beliefs() {
     const names = this.run.about().beliefNames ?? [];
     const rows = this.run.all("belief");
-    const count = rows[0]?.values.length ?? 0;
+    const count = rows.reduce((most, row) => Math.max(most, row.values.length), 0); // runs may believe more or less
     return Array.from({ length: count }, (_, i) => {
       const name = names[i] ?? `belief ${i}`;
-      return { name, points: rows.map((row) => [row.at, row.values[i]]), goals: this.goals(bare(name)) };
+      return { name, points: rows.map((row) => [row.at, row.values[i] ?? null]), goals: this.goals(bare(name)) };
     });
   }
 
