@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from unified_planning.exceptions import UPException
 from unified_planning.io import PDDLWriter
 from unified_planning.model.walkers import Simplifier
 from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, TimeTriggeredPlan
 
 from tailor.executive.interfaces.values import Fact
-from tailor.executive.planning import Domain, Plan, Problem, Step, Unsupported, parse_domain, parse_problem
+from tailor.executive.planning import Domain, Plan, Problem, Step, parse_domain, parse_problem
 from tailor.tools.plan_search.transitive_reduction import transitive_reduction
+from tailor.tools.up_engine.pddl_writing import written
 
 DEFAULT_TICK_S = 0.01
 ROUNDING_S = Fraction(1, 10**9)  # our times are whole nanoseconds
@@ -38,15 +38,10 @@ class Translation:
           Unsupported: It has a feature that we or PDDL do not have.
           UsageError: It is larger than our parser allows.
         """
-        writable, is_possible = _without_constant_goals(original)
-        writer = PDDLWriter(writable)
-        try:
-            texts = writer.get_domain(), writer.get_problem()
-        except (UPException, NotImplementedError) as error:
-            raise Unsupported(f"not expressible in PDDL: {error}") from None
-        domain = parse_domain(texts[0], "domain")
-        problem = parse_problem(texts[1], domain, "problem")
-        return cls(original, writer, domain, problem if is_possible else problem.with_goal("(or)"))
+        text = written(original)
+        domain = parse_domain(text.domain, "domain")
+        problem = parse_problem(text.problem, domain, "problem")
+        return cls(original, text.writer, domain, problem if text.is_possible else problem.with_goal("(or)"))
 
     @property
     def timed(self) -> bool:
@@ -119,19 +114,6 @@ class Translation:
             if value.is_constant() and abs(Fraction(value.constant_value()) - duration) < ROUNDING_S:
                 return Fraction(value.constant_value())
         return duration
-
-
-def _without_constant_goals(original: Any) -> tuple[Any, bool]:
-    """The problem without goals that are always true or never, which its writer refuses; whether none is never true."""
-    goals = [goal.simplify() for goal in original.goals]
-    if not any(goal.is_bool_constant() for goal in goals):
-        return original, True
-    writable = original.clone()
-    writable.clear_goals()
-    for goal in goals:
-        if not goal.is_bool_constant():
-            writable.add_goal(goal)
-    return writable, not any(goal.is_false() for goal in goals)
 
 
 def _fraction(seconds: float) -> Fraction:
