@@ -23,7 +23,6 @@ from unified_planning.model import ProblemKind
 from unified_planning.plans import PlanKind
 
 from tailor.executive.planning import (
-    AnytimeSearch,
     Result,
     Settings,
     UndecidedError,
@@ -34,9 +33,10 @@ from tailor.executive.planning import (
 from tailor.executive.planning.settings import MAX_TICK_S, MIN_TICK_S
 from tailor.schemas.errors import UsageError
 from tailor.tools.plan_search.limits import GROUND_LIMIT, MAX_PLANS, Limits
-from tailor.tools.plan_search.sources import built_in
 from tailor.tools.up_engine import NAME
+from tailor.tools.up_engine.searches import Improvement, once
 from tailor.tools.up_engine.supported import supported_kind
+from tailor.tools.up_engine.time_rules import broken_rule
 from tailor.tools.up_engine.translation import Translation
 
 Status = PlanGenerationResultStatus
@@ -97,7 +97,7 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
         except UsageError as reason:
             return self._refused(reason)
         limits = self._limits(timeout)
-        result = built_in(task.domain, task.problem, self._settings_of(task), limits)
+        result = once(task, self._settings_of(task), limits)
         return self._result(task, result, _status(result, task, limits))
 
     def _get_solutions(
@@ -110,14 +110,12 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
             yield self._refused(reason)
             return
         limits = self._limits(timeout)
-        search = AnytimeSearch(task.domain, task.problem, self._settings_of(task))
-        while not search.ended and not limits.reason:
-            result = search.advance(limits)
-            if result is not None and result.plan is not None:
-                yield self._result(task, result, Status.INTERMEDIATE)
-        best = search.best or Result("limit", None, limits.reason, *search.counts)
-        optimal = best.plan is not None and search.ended == "proven" and problem.quality_metrics and not task.timed
-        yield self._result(task, best, Status.SOLVED_OPTIMALLY if optimal else _status(best, task, limits))
+        search = Improvement(task, self._settings_of(task), limits)
+        for better in search.run():
+            yield self._result(task, better, Status.INTERMEDIATE)
+        last = search.last
+        optimal = last.plan is not None and search.is_proven and problem.quality_metrics and not task.timed
+        yield self._result(task, last, Status.SOLVED_OPTIMALLY if optimal else _status(last, task, limits))
 
     def _task(self, problem: Any) -> Translation:
         """The translation of a problem whose epsilon can be a tick.
@@ -156,7 +154,8 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
             if task.timed and plan.kind is not PlanKind.TIME_TRIGGERED_PLAN:
                 raise UndecidedError("a problem with time is validated by its schedule: a time-triggered plan")
             check = validate if task.timed else validate_every_order
-            fault = check(ours, task.domain, task.problem)
+            fault = broken_rule(problem, plan) if task.timed else ""
+            fault = fault or check(ours, task.domain, task.problem)
         except (UndecidedError, UsageError) as reason:
             return ValidationResult(ValidationResultStatus.UNKNOWN, self.name, _log(str(reason)))
         except UPException as reason:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -15,6 +16,7 @@ from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning import Domain, Plan, Problem, Step, parse_domain, parse_problem
 from tailor.tools.plan_search.transitive_reduction import transitive_reduction
 from tailor.tools.up_engine.pddl_writing import written
+from tailor.tools.up_engine.time_rules import is_whole, overlap, without_overlap
 
 DEFAULT_TICK_S = 0.01
 ROUNDING_S = Fraction(1, 10**9)  # our times are whole nanoseconds
@@ -50,8 +52,27 @@ class Translation:
 
     @property
     def tick_s(self) -> float:
-        """The least time between dependent events: the problem's epsilon, or our default; that without times, too."""
-        return float(self.original.epsilon) if self.timed and self.original.epsilon else DEFAULT_TICK_S
+        """The least time between dependent events: the problem's epsilon, or our default; that without times, too.
+
+        In discrete time, it is a whole number.
+        """
+        epsilon = self.original.epsilon if self.timed else None
+        if self.timed and self.original.discrete_time:
+            return float(math.ceil(epsilon or 1))
+        return float(epsilon or DEFAULT_TICK_S)
+
+    def without_overlap(self) -> Translation:
+        """The same problem, in which no action overlaps itself."""
+        domain = without_overlap(self.domain)
+        return replace(self, domain=domain, problem=replace(self.problem, domain=domain))
+
+    def overlap(self, plan: Plan) -> str:
+        """The action that overlaps itself in a plan although the problem forbids that; empty if there is none."""
+        return overlap(self.original, self.to_unified(plan)) if self.timed else ""
+
+    def is_whole(self, plan: Plan) -> bool:
+        """Whether a plan's times are whole numbers, or need not be."""
+        return not self.timed or is_whole(self.original, self.to_unified(plan))
 
     # --- plans -----------------------------------------------------------------------------------
     def to_unified(self, plan: Plan) -> Any:
