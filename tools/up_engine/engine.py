@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, get_args
 from warnings import warn
 
 from unified_planning.engines import Engine
@@ -23,6 +23,7 @@ from unified_planning.model import ProblemKind
 from unified_planning.plans import PlanKind
 
 from tailor.executive.planning import (
+    EngineName,
     Result,
     Settings,
     UndecidedError,
@@ -49,12 +50,18 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
     Args:
       memory_mb: Limit of the memory that a search takes.
       **settings: Fields of `Settings`, e.g. engine="pocl", node_limit=10_000, flaw_orders=(FlawOrder("LCFR"),).
+
+    Raises:
+      UsageError: `engine` is none of the built-in planner.
     """
 
     def __init__(self, memory_mb: float = 512.0, **settings: Any) -> None:
         Engine.__init__(self)
         OneshotPlannerMixin.__init__(self)
         AnytimePlannerMixin.__init__(self)
+        engine = settings.get("engine", "auto")
+        if engine not in get_args(EngineName):
+            raise UsageError(f"engine {NAME}: expected {' or '.join(get_args(EngineName))}, found {engine!r}")
         self._memory_mb = memory_mb
         self._settings = {"ground_limit": GROUND_LIMIT, "node_limit": MAX_PLANS, **settings}
 

@@ -37,6 +37,7 @@ from unified_planning.shortcuts import (
 )
 from unified_planning.test.examples import get_example_problems
 
+from tailor.schemas.errors import UsageError
 from tailor.tools.up_engine import register
 from tailor.tools.up_engine.supported import supported_kind
 
@@ -167,6 +168,11 @@ def test_limits_are_timeouts_and_not_proofs():
         assert planner.solve(CASES[SLOW].problem, timeout=0.2).status is Status.TIMEOUT
     with OneshotPlanner(name="tailor", params={"node_limit": 50, "engine": "pocl"}) as planner:
         assert planner.solve(CASES[SLOW].problem).status is Status.UNSOLVABLE_INCOMPLETELY
+
+
+def test_an_engine_that_is_not_built_in_is_refused():
+    with pytest.raises(UsageError, match="expected auto or pocl or forward, found 'kairos'"):
+        OneshotPlanner(name="tailor", params={"engine": "kairos"})
 
 
 def lasting(duration_s):
