@@ -9,11 +9,13 @@ from fractions import Fraction
 from typing import Any
 
 from unified_planning.io import PDDLWriter
+from unified_planning.model import DurativeAction
 from unified_planning.model.walkers import Simplifier
 from unified_planning.plans import ActionInstance, PartialOrderPlan, PlanKind, TimeTriggeredPlan
 
 from tailor.executive.interfaces.values import Fact
 from tailor.executive.planning import Domain, Plan, Problem, Step, parse_domain, parse_problem
+from tailor.executive.planning.pddl.language import Action, Condition, DurationBound, Number, Or
 from tailor.tools.plan_search.transitive_reduction import transitive_reduction
 from tailor.tools.up_engine.pddl_writing import written
 from tailor.tools.up_engine.time_rules import is_whole, overlap, without_overlap
@@ -21,6 +23,10 @@ from tailor.tools.up_engine.time_rules import is_whole, overlap, without_overlap
 DEFAULT_TICK_S = 0.01
 ROUNDING_S = Fraction(1, 10**9)  # our times are whole nanoseconds
 EXACT_TICK_S = 1e-6  # of plans to validate: their times are fractions, not rounded to ticks
+
+
+# the only durative action of a domain whose own ones are never possible and left out by the writer: plans keep times
+NEVER = Action("never ", (), (Condition(Or(())),), (), (DurationBound("=", Number(1.0)),))
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +48,8 @@ class Translation:
         """
         text = written(original)
         domain = parse_domain(text.domain, "domain")
+        if _takes_time(original) and not domain.durative:
+            domain = replace(domain, actions=(*domain.actions, NEVER))
         problem = parse_problem(text.problem, domain, "problem")
         return cls(original, text.writer, domain, problem if text.is_possible else problem.with_goal("(or)"))
 
@@ -135,6 +143,11 @@ class Translation:
             if value.is_constant() and abs(Fraction(value.constant_value()) - duration) < ROUNDING_S:
                 return Fraction(value.constant_value())
         return duration
+
+
+def _takes_time(original: Any) -> bool:
+    """Whether the plans of a problem are time-triggered for unified-planning."""
+    return bool(original.timed_effects) or any(isinstance(action, DurativeAction) for action in original.actions)
 
 
 def _fraction(seconds: float) -> Fraction:

@@ -12,12 +12,15 @@ from unified_planning.engines import PlanGenerationResultStatus as Status
 from unified_planning.engines import ValidationResultStatus
 from unified_planning.plans import ActionInstance, TimeTriggeredPlan
 from unified_planning.shortcuts import (
+    FALSE,
     AnytimePlanner,
     BoolType,
     DurativeAction,
     EndTiming,
+    GlobalStartTiming,
     InstantaneousAction,
     MinimizeMakespan,
+    Not,
     OneshotPlanner,
     PlanValidator,
     Problem,
@@ -134,3 +137,24 @@ def test_what_begins_at_the_very_end_of_the_same_action_does_not_overlap_it():
     with PlanValidator(name="tailor") as validator:
         verdict = validator.validate(problem, TimeTriggeredPlan(steps))
     assert verdict.status is ValidationResultStatus.VALID
+
+
+@pytest.mark.parametrize("is_durative", [True, False])
+def test_plans_have_times_even_where_nothing_that_takes_time_is_possible(is_durative):
+    problem = Problem("instant")
+    done = problem.add_fluent("done", BoolType(), default_initial_value=False)
+    ready = problem.add_fluent("ready", BoolType(), default_initial_value=False)
+    for needed, made in ((Not(ready), ready), (ready, done)):
+        action = InstantaneousAction(f"make {made.name}")
+        action.add_precondition(needed)
+        action.add_effect(made, True)
+        problem.add_action(action)
+    if is_durative:
+        never = DurativeAction("never")
+        never.add_condition(StartTiming(), FALSE())
+        never.add_effect(EndTiming(), done, True)
+        problem.add_action(never)
+    else:
+        problem.add_timed_effect(GlobalStartTiming(0), done, False)
+    problem.add_goal(done)
+    assert {type(plan) for plan in plans(problem)} == {TimeTriggeredPlan}
