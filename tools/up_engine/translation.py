@@ -50,7 +50,7 @@ class Translation:
         domain = parse_domain(text.domain, "domain")
         if _takes_time(original) and not domain.durative:
             domain = replace(domain, actions=(*domain.actions, NEVER))
-        problem = parse_problem(text.problem, domain, "problem")
+        problem = replace(parse_problem(text.problem, domain, "problem"), changes_apart=True)
         return cls(original, text.writer, domain, problem if text.is_possible else problem.with_goal("(or)"))
 
     @property

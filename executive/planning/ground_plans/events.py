@@ -39,6 +39,10 @@ class Event(NamedTuple):
             and other.added.isdisjoint(self.removed)
         )
 
+    def alone(self) -> Event:
+        """The event such that others that change one of its facts interfere with it, even alike."""
+        return self._replace(reads=self.reads | self.added | self.removed)
+
     def certain(self) -> Event:
         """The event without the changes that may not happen."""
         return self._replace(added=self.added - self.uncertain, removed=self.removed - self.uncertain)
@@ -71,7 +75,8 @@ def events_of(names: Sequence[Fact], problem: Problem, world: StaticWorld, late:
         steps = [_changes(part, world, guards) for part in parts]
     changed = by_predicate(fact for event in (*literals, *steps) for fact in event.added | event.removed)
     reading = zip(steps, parts, strict=True)
-    return [*literals, *(event._replace(reads=_reads(part, changed, world)) for event, part in reading)]
+    events = [*literals, *(event._replace(reads=_reads(part, changed, world)) for event, part in reading)]
+    return [event.alone() for event in events] if problem.changes_apart else events
 
 
 def _literal(timed: TimedLiteral) -> Event:

@@ -36,6 +36,7 @@ class Problem:
     values: Mapping[Fact, float] = field(default_factory=dict)  # of static functions
     timed: tuple[TimedLiteral, ...] = ()
     metric: OneOf["", "makespan", "cost"] = ""
+    changes_apart: bool = False  # no two events may change a fact at the same time, not even alike, as PDDL allows
     # goals with their texts in one line, by the text as given
     _read: dict[str, tuple[Formula, str]] = field(default_factory=dict, compare=False, repr=False)
 

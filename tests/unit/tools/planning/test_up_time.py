@@ -158,3 +158,18 @@ def test_plans_have_times_even_where_nothing_that_takes_time_is_possible(is_dura
         problem.add_timed_effect(GlobalStartTiming(0), done, False)
     problem.add_goal(done)
     assert {type(plan) for plan in plans(problem)} == {TimeTriggeredPlan}
+
+
+def test_no_two_actions_change_the_same_fact_at_the_same_time():
+    problem = Problem("two bells")
+    rung = problem.add_fluent("rung", BoolType(), default_initial_value=False)
+    for n in range(2):
+        done = problem.add_fluent(f"done {n}", BoolType(), default_initial_value=False)
+        ring = DurativeAction(f"ring {n}")
+        ring.set_fixed_duration(2)
+        ring.add_effect(EndTiming(), rung, True)
+        ring.add_effect(EndTiming(), done, True)
+        problem.add_action(ring)
+        problem.add_goal(done)
+    problem.add_goal(rung)
+    assert all(len(plan.timed_actions) == 2 for plan in plans(problem))
