@@ -22,8 +22,12 @@ def main(engine: str, domain: str, problem: str) -> int:
     from unified_planning.shortcuts import OneshotPlanner, get_environment
 
     get_environment().credits_stream = None
-    reason = _no_planner(engine)
-    task = None if reason else PDDLReader().parse_problem(domain, problem)
+    task, reason = None, _no_planner(engine)
+    if not reason:
+        try:
+            task = PDDLReader().parse_problem(domain, problem)
+        except Exception as error:  # whatever the reader, and the parser that it uses, raise
+            reason = f"unified-planning does not read the problem: {' '.join(str(error).split())}"
     reason = reason or _unsupported(engine, task)
     if reason:
         print(reason)

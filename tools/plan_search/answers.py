@@ -46,4 +46,5 @@ def _parsed(answer: PlannerAnswer, problem: Problem) -> Plan:
 def _verdict(output: str) -> str:
     """What a planner states instead of a plan, such as VHPOP's "no plan"; empty if it printed steps, or nothing."""
     lines = [line for line in map(str.strip, output.splitlines()) if line and not line.startswith(";")]
-    return f": '{shortened(lines[-1])}'" if lines and "(" not in output else ""
+    has_steps = any(line.lstrip("0123456789.: ").startswith("(") for line in lines)
+    return f": '{shortened(lines[-1])}'" if lines and not has_steps else ""

@@ -127,6 +127,18 @@ def test_an_engine_that_cannot_plan_a_task_is_named_with_the_reason(capsys):
     assert "'the engine pyperplan does not plan with continuous time" in line
 
 
+def test_pddl_that_unified_planning_does_not_read_is_a_reason_in_one_line(tmp_path, capsys):
+    pytest.importorskip("unified_planning")
+    from tailor.runtime.planners import unified_planner
+    from tailor.tools.up_engine import register
+
+    register()
+    domain = tmp_path / "derived.pddl"
+    domain.write_text("(define (domain d) (:predicates (p) (q)) (:derived (p) (q)))")
+    assert unified_planner.main("tailor", str(domain), KITCHEN[1]) == 1
+    assert capsys.readouterr().out.startswith("unified-planning does not read the problem: Expected ')'")
+
+
 def test_a_package_that_cannot_be_imported_is_one_line_with_its_error(monkeypatch):
     monkeypatch.setattr(named, "find_spec", lambda name: object())
     script = "import sys; print('Traceback', file=sys.stderr); sys.exit('ImportError: of grpc')"

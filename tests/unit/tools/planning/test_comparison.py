@@ -87,6 +87,7 @@ def test_the_first_planner_is_the_one_of_the_options(capsys):
     [
         (";kitchen-s1\nno plan\n;Problem has no solution.", "the planner ended with code 0: 'no plan'"),
         ("x" * 9999, "the planner ended with code 0: '" + "x" * 57 + "...'"),
+        ("none (of 2 tries)", "the planner ended with code 0: 'none (of 2 tries)'"),
         ("1:(grip", "the planner ended with code 0; plan text, line 1: "),
         ("", "the planner ended with code 0; plan text: expected steps"),
     ],
