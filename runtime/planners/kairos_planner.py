@@ -9,7 +9,7 @@ from typing import Any
 
 
 def main(seconds: str, tick: str, domain: str, problem: str) -> int:
-    """Plan and print; 0 with a plan, 1 without.
+    """Plan and print; 0 with a plan, 1 without, with the reason as last line: the reader of plans quotes it.
 
     Args:
       seconds: Time for better plans; 0: the first plan, without a limit.
@@ -25,8 +25,13 @@ def main(seconds: str, tick: str, domain: str, problem: str) -> int:
     )
     if float(tick):
         options["epsilon"] = float(tick)
-    result = kairos.solve(Path(domain).read_text("utf-8"), Path(problem).read_text("utf-8"), threads=1, **options)
-    print(result.plan.to_string() if result.plan is not None else f"; {result.status}")
+    texts = (Path(path).read_text("utf-8") for path in (domain, problem))
+    try:
+        result = kairos.solve(*texts, threads=1, **options)
+    except kairos.PddlError as error:  # a line for each fault
+        print(str(error).partition("\n")[0])
+        return 1
+    print(result.plan.to_string() if result.plan is not None else result.status.name.lower().replace("_", " "))
     return 0 if result.plan is not None else 1
 
 

@@ -127,6 +127,17 @@ def test_an_engine_that_cannot_plan_a_task_is_named_with_the_reason(capsys):
     assert "'the engine pyperplan does not plan with continuous time" in line
 
 
+@pytest.mark.parametrize(("name", "reason"), [("q", "'unsolvable'"), ("é", "'domain.pddl:1:38: error: ")])
+def test_what_kairos_states_instead_of_a_plan_is_quoted(name, reason, tmp_path, capsys):
+    pytest.importorskip("kairos")
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    action = f"(:action a :parameters () :precondition ({name}) :effect (p))"
+    domain.write_text(f"(define (domain d) (:predicates (p) ({name})) {action})")
+    problem.write_text("(define (problem x) (:domain d) (:init) (:goal (p)))")
+    assert main(["plan", str(domain), str(problem), "--planner", "kairos"]) == 1
+    assert f"the planner ended with code 1: {reason}" in capsys.readouterr().err
+
+
 def test_pddl_that_unified_planning_does_not_read_is_a_reason_in_one_line(tmp_path, capsys):
     pytest.importorskip("unified_planning")
     from tailor.runtime.planners import unified_planner
