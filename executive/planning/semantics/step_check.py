@@ -1,4 +1,4 @@
-"""Checks a step by itself: its action, arguments, cost and duration."""
+"""Checks a step by itself: its action, arguments, cost, start and duration."""
 
 from __future__ import annotations
 
@@ -46,8 +46,10 @@ def _has_cost(cost: Numeric, binding: Binding, objects: Objects) -> bool:
         return False
 
 
-def check_duration(step: Step, action: Action, binding: Binding, objects: Objects, plan: Plan) -> None:
-    """Raises Unsound unless a step of the plan may last as long as it does."""
+def check_times(step: Step, action: Action, binding: Binding, objects: Objects, plan: Plan) -> None:
+    """Raises Unsound unless a step of the plan may start when it does, and last as long."""
+    if plan.durative and not step.start >= 0:
+        raise Unsound(f"step {step.id}: {format_atom(step.action)} starts at {step.start} s, before the initial state")
     if action.duration is None:
         return
     if not plan.durative:

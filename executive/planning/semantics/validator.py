@@ -14,7 +14,7 @@ from tailor.executive.planning.semantics.interference import reads
 from tailor.executive.planning.semantics.large_formulas import holding
 from tailor.executive.planning.semantics.link_check import Bound, faulty_link
 from tailor.executive.planning.semantics.state import Objects, State, conditions_at
-from tailor.executive.planning.semantics.step_check import Unsound, bind_step, check_duration
+from tailor.executive.planning.semantics.step_check import Unsound, bind_step, check_times
 
 
 def validate(plan: Plan, domain: Domain, problem: Problem) -> str:
@@ -58,7 +58,7 @@ def _simulate(plan: Plan, domain: Domain, objects: Objects, bound: Bound) -> Wor
         starting = [event.step for event in events if event.step and event.step.id not in bound]
         for step in starting:
             bound[step.id] = bind_step(step, domain, objects)
-            check_duration(step, *bound[step.id], objects, plan)
+            check_times(step, *bound[step.id], objects, plan)
         yield from _check_conditions(events, state, objects, bound)
         began.update((event.step.id, state) for event in events if event.step and not event.ends)
         changes: list[_Change] = []

@@ -44,6 +44,13 @@ def test_a_wrong_action_is_found(kitchen, action, fault):
     assert fault in validate(changed(plan, 1, action=action), domain, problem)
 
 
+@pytest.mark.parametrize("start_s", [-0.01, float("-inf")])
+def test_a_start_before_the_initial_state_is_found(soccer, start_s):
+    plan, domain, problem = soccer
+    fault = validate(changed(plan, 0, start=start_s), domain, problem)
+    assert fault.endswith(f"starts at {start_s} s, before the initial state")
+
+
 def test_a_missed_goal_is_found(kitchen):
     plan, domain, problem = kitchen
     short = dataclasses.replace(plan, steps=plan.steps[:-1], links=())
