@@ -134,7 +134,8 @@ def _check_interference(changes: list[_Change], objects: Objects, bound: Bound) 
         for other, more, less in changes:
             if other is event or not changed:
                 continue
-            if added & less or removed & more or _is_read(other, changed, objects, bound):
+            alike = objects.problem.changes_apart and other.step is not event.step and changed & (more | less)
+            if alike or added & less or removed & more or _is_read(other, changed, objects, bound):
                 raise Unsound(f"{event.label} disturbs {other.label} at the same time")
 
 

@@ -160,7 +160,8 @@ def test_plans_have_times_even_where_nothing_that_takes_time_is_possible(is_dura
     assert {type(plan) for plan in plans(problem)} == {TimeTriggeredPlan}
 
 
-def test_no_two_actions_change_the_same_fact_at_the_same_time():
+def two_bells():
+    """Two actions that end by making the same fact true."""
     problem = Problem("two bells")
     rung = problem.add_fluent("rung", BoolType(), default_initial_value=False)
     for n in range(2):
@@ -172,4 +173,19 @@ def test_no_two_actions_change_the_same_fact_at_the_same_time():
         problem.add_action(ring)
         problem.add_goal(done)
     problem.add_goal(rung)
-    assert all(len(plan.timed_actions) == 2 for plan in plans(problem))
+    return problem
+
+
+def test_no_two_actions_change_the_same_fact_at_the_same_time():
+    assert all(len(plan.timed_actions) == 2 for plan in plans(two_bells()))
+
+
+@pytest.mark.parametrize(("second", "valid"), [(Fraction(1), True), (Fraction(0), False)])
+def test_a_plan_in_which_two_actions_do_is_invalid(second, valid):
+    problem = two_bells()
+    first, other = map(ActionInstance, problem.actions)
+    plan = TimeTriggeredPlan([(Fraction(0), first, Fraction(2)), (second, other, Fraction(2))])
+    for name in ("tailor", "up_time_triggered_validator"):
+        with PlanValidator(name=name) as validator:
+            validator.skip_checks = True
+            assert (validator.validate(problem, plan).status is ValidationResultStatus.VALID) is valid
