@@ -23,7 +23,8 @@ MORE_STEPS = (0, 1)  # than a known plan, one search each: the longer plans are 
 class PlanEnumeration:
     """Plans that differ in their steps or in the order of these: first those as short as a known plan, then others.
 
-    Each search goes on after a plan, until all are found or a limit is reached.
+    Each search goes on after a plan, until all are found or a limit is reached. Of a plan with variables (lifted) one
+    choice of objects is found, not all.
 
     Args:
       problem: Grounded by an earlier search.

@@ -1,6 +1,6 @@
 """Rules of unified-planning on time that PDDL has not: actions that do not overlap themselves, whole numbers.
 
-Both hold unless the problem says otherwise (`self_overlapping`), or if it says so (`discrete_time`).
+The first holds unless a problem allows overlaps (`self_overlapping`), the second if its time is discrete.
 """
 
 from __future__ import annotations
