@@ -91,8 +91,11 @@ def soccer_run(seed: int = 3) -> Iterator[Published]:
     yield Published(now, "exec/status", status(now, "READY", "achieved", "", 2, 0.0, 0.0, ()))
 
 
-def arm_run(seed: int = 1) -> Iterator[Published]:
-    """A robot that is no point on a plane: two joints swing between waypoints, nothing is known of its domain."""
+def arm_run(seed: int = 1, outcomes: tuple[str, ...] = ("done",) * 4) -> Iterator[Published]:
+    """A robot that is no point on a plane: two joints swing between waypoints, nothing is known of its domain.
+
+    Its four actions end with `outcomes`.
+    """
     rng = np.random.default_rng(seed)
     yield Published(0, "exec/provenance", m.Provenance(0, json.dumps(order("no-such-domain", seed))))
     for k in range(120):
@@ -102,7 +105,8 @@ def arm_run(seed: int = 1) -> Iterator[Published]:
         yield Published(now, "exec/status", status(now, "EXECUTING", "", "reach", index, within / 10, 2.9, belief))
         yield Published(now, "exec/tick", tick_report(now, rng))
         if within == 29:
-            yield Published(now, "exec/finished", m.ActionFinished(now, k, "reach", index, "done", "", 2.9, 3.0))
+            end = m.ActionFinished(now, k, "reach", index, outcomes[index], "", 2.9, 3.0)
+            yield Published(now, "exec/finished", end)
 
 
 def order(domain: str, seed: int) -> dict[str, object]:

@@ -7,7 +7,6 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -240,13 +239,7 @@ def test_the_button_that_folds_a_panel_is_named_as_the_panel(browser: Browser, s
 def test_an_aborted_action_has_another_colour_than_a_failed_one_and_both_are_explained(
     browser: Browser, tmp_path: Path
 ) -> None:
-    outcomes = iter(("failed", "aborted", "done", "done"))
-    run = [
-        replace(each, message=replace(each.message, outcome=next(outcomes)))
-        if isinstance(each.message, m.ActionFinished)
-        else each
-        for each in synthetic_run.arm_run()
-    ]
+    run = synthetic_run.arm_run(outcomes=("failed", "aborted", "done", "done"))
     opened(browser, written(tmp_path / "arm.html", rows_of(run, RunTimeline())), 6.0)
     colours = {kind: f"getComputedStyle(document.querySelector('#timeline .bar.{kind}')).fill" for kind in NOT_DONE}
     assert len({browser.value(colour) for colour in colours.values()}) == 2

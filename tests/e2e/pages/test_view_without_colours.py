@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from tailor.schemas import messages as m
 from tailor.tools.viewer.page import page
 from tailor.tools.viewer.timeline import RunTimeline
 from tests.support import synthetic_run
@@ -37,13 +35,7 @@ def show(browser: Browser, path: Path, run, at_s: float) -> None:
 
 
 def test_a_failed_action_has_a_cross_and_an_aborted_one_a_dashed_border(browser: Browser, tmp_path: Path) -> None:
-    outcomes = iter(("failed", "aborted", "done", "done"))
-    run = [
-        replace(each, message=replace(each.message, outcome=next(outcomes)))
-        if isinstance(each.message, m.ActionFinished)
-        else each
-        for each in synthetic_run.arm_run()
-    ]
+    run = synthetic_run.arm_run(outcomes=("failed", "aborted", "done", "done"))
     show(browser, tmp_path / "arm.html", run, 6.0)
     actions = "[...document.querySelectorAll('#timeline g:has(> .bar.actual)')]"
     crosses = browser.value(f"{actions}.map((each) => each.querySelectorAll('.cross').length)")

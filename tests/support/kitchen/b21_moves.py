@@ -2,11 +2,26 @@
 
 import math
 
+import numpy as np
+
 from tailor.schemas.kitchen.furniture import kitchen, on_table
 from tailor.schemas.kitchen.kinematics import FOREARM_M, HAND_M, SHOULDER, UPPER_ARM_M
+from tailor.simnodes.b21.profiles import body as of_profile
 
 OPEN_M, SHUT_M = 0.12, 0.0
 STEP_NS = 100_000_000
+
+
+def with_cup(**start):
+    """A body that starts with cup1 in its gripper."""
+    body = of_profile()
+    body.reset(np.random.default_rng(0), {"held": 1.0, "width": 0.05, **start})
+    return body
+
+
+def cup(body, name="cup1"):
+    """The truth of a cup."""
+    return next(each for each in body.ground_truth().objects if each.name == name)
 
 
 def cups_on_tables(*names):

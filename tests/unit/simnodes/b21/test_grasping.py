@@ -11,6 +11,7 @@ from tailor.simnodes.b21.profiles import body as of_profile
 from tests.support.kitchen.b21_moves import (
     OPEN_M,
     SHUT_M,
+    cup,
     cups_on_tables,
     fetch,
     level_reach,
@@ -18,6 +19,7 @@ from tests.support.kitchen.b21_moves import (
     seen_from,
     standing_at,
     straight,
+    with_cup,
 )
 
 
@@ -25,17 +27,6 @@ def at_table(away_m=0.6, **start):
     body = of_profile()
     body.reset(np.random.default_rng(0), {**cups_on_tables("cup1", "cup2"), **standing_at("table1", away_m), **start})
     return body
-
-
-def with_cup(**start):
-    """A body that starts with cup1 in its gripper."""
-    body = of_profile()
-    body.reset(np.random.default_rng(0), {"held": 1.0, "width": 0.05, **start})
-    return body
-
-
-def cup(body, name="cup1"):
-    return next(each for each in body.ground_truth().objects if each.name == name)
 
 
 def rest(body, seconds=2.0, width=SHUT_M):

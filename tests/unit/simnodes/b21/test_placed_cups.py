@@ -8,20 +8,10 @@ import pytest
 from tailor.executive.belief.angles import difference
 from tailor.schemas.kitchen.kinematics import JOINTS
 from tailor.simnodes.b21.profiles import body as of_profile
-from tests.support.kitchen.b21_moves import OPEN_M, SHUT_M, fetch, level_reach, seen_from, standing_at
+from tests.support.kitchen.b21_moves import OPEN_M, SHUT_M, cup, fetch, level_reach, seen_from, standing_at, with_cup
 
 STILL = (0.0,) * 8
 REACHED = dict(zip(JOINTS, level_reach(0.8, 0.1, 0.95), strict=True))
-
-
-def with_cup(**start):
-    body = of_profile()
-    body.reset(np.random.default_rng(0), {"held": 1.0, "width": 0.05, **start})
-    return body
-
-
-def cup(body, name="cup1"):
-    return next(each for each in body.ground_truth().objects if each.name == name)
 
 
 def rest(body, width=SHUT_M, seconds=1.0):
