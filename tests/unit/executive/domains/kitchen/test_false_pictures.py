@@ -34,3 +34,10 @@ def test_an_object_that_would_be_elsewhere_or_turned_or_down_at_once_is_doubted(
 
 def test_a_direction_is_a_matter_of_the_full_turn():
     assert not doubted([replace(CUP, phi=3.13)], [replace(CUP, phi=-3.13)])
+
+
+def test_the_noise_of_a_far_object_is_none_of_another_one():
+    """Its height alone may be off by more than an object that is near could be without being moved."""
+    far = replace(percept("stool", 4.0, z=0.6), var_xy=0.01)
+    assert not doubted([far], [replace(far, x=4.2, z=0.9)])
+    assert doubted([far], [far], [replace(far, x=5.0)])
