@@ -9,11 +9,9 @@ FOR = {"package": "package", "action": "each action", "scenario": "each scenario
 
 
 def drawn(page: str) -> str:
-    """The page with today's clauses."""
-    rows = [
-        f"| `{clause.name}` | {FOR[clause.scope]} | {clause.text} | {clause.needs} |"
-        for clause in sorted(CLAUSES.values(), key=lambda each: list(FOR).index(each.scope))
-    ]
+    """The page with today's clauses, in the same order whichever of their modules was imported first."""
+    ordered = sorted(CLAUSES.values(), key=lambda each: (list(FOR).index(each.scope), each.check.__module__))
+    rows = [f"| `{each.name}` | {FOR[each.scope]} | {each.text} | {each.needs} |" for each in ordered]
     table = "\n".join(["| clause | for | a package keeps to it if | needs |", "|---|---|---|---|", *rows])
     head, begin, _ = page.partition(BEGIN)
     return f"{head}{begin}\n{table}\n"
