@@ -2,7 +2,7 @@
 
 import socket
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from tailor.runtime.bus.opening import open_client, open_local_router, open_router
@@ -115,6 +115,7 @@ def armed_sender(states):
 def child_pid(parent, name):
     """Process id of the child of the launcher `parent` that runs `tailor NAME`."""
     for line in Path(f"/proc/{parent}/task/{parent}/children").read_text().split():
-        if f"tailor.tools.main\0{name}\0" in Path(f"/proc/{line}/cmdline").read_text():
-            return int(line)
+        with suppress(FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
+            if f"tailor.tools.main\0{name}\0" in Path(f"/proc/{line}/cmdline").read_text():
+                return int(line)
     raise LookupError(name)
