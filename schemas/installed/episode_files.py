@@ -55,11 +55,14 @@ def _imported(starts: Iterable[str]) -> dict[str, Path]:
     """Modules that are reached by imports inside the packages of `starts` and of Tailor, with their files."""
     packages = {OURS, *(start.partition(".")[0] for start in starts)}
     found: dict[str, Path] = {}
-    waiting = list(starts)
+    waiting, looked_up = list(starts), set[str]()
     while waiting:
         module = waiting.pop()
-        path = None if module in found else _file_of(module)
-        if path is not None and module.partition(".")[0] in packages and not _declares(module, path):
+        if module in looked_up or module.partition(".")[0] not in packages:
+            continue
+        looked_up.add(module)
+        path = _file_of(module)
+        if path is not None and not _declares(module, path):
             found[module] = path
             waiting.extend(_imports(module, path))
     return found
