@@ -9,17 +9,7 @@ NAME = re.compile(r"[a-z][a-z0-9_-]*")  # part of keys on the bus, of file names
 OBJECT = re.compile(r"[A-Za-z_][\w.]*(:[A-Za-z_]\w*)?")
 RESERVED = ("clock", "estop", "exec", "launch", "recorder", "rosout", "tf")  # first words of keys that are no robot's
 REQUIRED = ("domain", "driver")
-OBJECTS = (
-    "domain",
-    "doubts",
-    "body",
-    "topics",
-    "sampler",
-    "features",
-    "draw",
-    "generator",
-    "scene",
-)  # else files
+OBJECTS = ("domain", "doubts", "body", "topics", "sampler", "features", "draw", "generator", "scene")  # else files
 
 
 @dataclass(frozen=True, slots=True)

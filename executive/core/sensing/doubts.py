@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 from tailor.schemas.messages import Sample
 
-AT_ONCE = 3  # readings of a topic in a row that contradict the belief: the last one is believed
+REPEATED = 3  # readings of a topic in a row that contradict the belief: the last one is believed
 
 
 def believed(
@@ -26,7 +26,7 @@ def believed(
     counts, kept = dict(doubted), list[Sample]()
     for sample in samples:
         count = counts.pop(sample.key, 0)
-        if count + 1 < AT_ONCE and contradicts(sample, tuple(kept)):
+        if count + 1 < REPEATED and contradicts(sample, tuple(kept)):
             counts[sample.key] = count + 1
         else:
             kept.append(sample)

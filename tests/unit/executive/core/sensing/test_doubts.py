@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive.core.modes import Mode
-from tailor.executive.core.sensing.doubts import AT_ONCE, believed
+from tailor.executive.core.sensing.doubts import REPEATED, believed
 from tailor.executive.core.state import initial_state
 from tailor.executive.core.step import step
 from tailor.executive.deliberation.context import Settings, make_context
@@ -33,7 +33,7 @@ def outcome(*words, key="agilo/ball"):
 
 
 def test_what_agrees_is_believed_and_what_contradicts_only_once_it_has_come_three_times_in_a_row():
-    assert AT_ONCE == 3
+    assert REPEATED == 3
     assert outcome("true", "false", "false", "false") == [True, False, False, True]
     assert outcome("false", "true", "false", "false", "true") == [False, True, False, False, True]
     assert outcome("false", "false", "false", "false", "false") == [False, False, True, False, False]
