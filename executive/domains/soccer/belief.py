@@ -190,7 +190,19 @@ def _relocated(belief: SoccerBelief, seen: PoseEstimate) -> SoccerBelief:
     x, y, phi = _variances(seen)
     pose = Pose(seen.x, seen.y, seen.phi, (x, 0.0, 0.0, y, 0.0, phi))
     located = _with_pose(belief, pose, 1, 0)
-    return replace(located, opponents=opponents.NONE, relocated=belief.relocated + (belief.poses_seen > 0))
+    if not belief.poses_seen:  # the first pose: balls have only been seen from where the robot is
+        return replace(located, opponents=opponents.NONE)
+    ball, ball2 = (_left_behind(each, belief.pose, pose) for each in (belief.ball, belief.ball2))
+    return replace(located, opponents=opponents.NONE, ball=ball, ball2=ball2, relocated=belief.relocated + 1)
+
+
+def _left_behind(ball: BallTrack | None, before: Pose, now: Pose) -> BallTrack | None:
+    """A ball that stays where it was in the map while somebody carries the robot from one pose to another."""
+    if ball is None:
+        return None
+    x, y = _in_map(before, ball)
+    c, s = math.cos(now.phi), math.sin(now.phi)
+    return replace(ball, ahead=c * (x - now.x) + s * (y - now.y), left=c * (y - now.y) - s * (x - now.x))
 
 
 def _variances(seen: PoseEstimate) -> tuple[float, float, float]:

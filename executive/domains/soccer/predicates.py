@@ -28,8 +28,8 @@ def value(query: LabelQuery) -> Interval | None:
 
 def _interval_of(query: LabelQuery, fact: Fact) -> Interval | None:
     """Range that one predicate gives the queried quantity; None if it gives none."""
-    if fact[0] == "atball" and fact not in query.holds:
-        return Interval(0.0, AT_BALL_MPS) if query.quantity == "v" else None
+    if fact[0] == "atball" and fact not in query.holds and query.quantity == "v":
+        return Interval(0.0, AT_BALL_MPS)
     exact = _exact_values(query, fact).get(query.quantity)
     return None if exact is None else Interval(exact, exact)
 
@@ -39,7 +39,9 @@ def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
     name, holding = fact[0], fact in query.holds
     if name == "robot" and holding:
         return _robot(query.belief)
-    if name == "ball" and holding:
+    if name in ("ball", "atball") and not holding:
+        return _target(query)
+    if name == "ball":
         return _ball(balls.with_ball_of(query.belief, query.label, query.scenario.settings))
     if name == "atball":
         return {**_robot(query.belief), **_ball(balls.with_ball_before_robot(query.belief))}
@@ -48,6 +50,14 @@ def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
     if name == "route" and fact[2] == query.label:
         return query.scenario.places[query.label]
     return {}
+
+
+def _target(query: LabelQuery) -> dict[str, float]:
+    """Where a ball counts as being at the target, whether the goal names the target's heading and speed or not."""
+    if query.label != query.scenario.settings.get("target_label"):
+        return {}
+    place = query.scenario.places[query.label]
+    return {"x": place["x"], "y": place["y"]}
 
 
 def _robot(belief: SoccerBelief) -> dict[str, float]:

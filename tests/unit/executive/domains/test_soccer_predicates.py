@@ -53,6 +53,13 @@ def test_robot_that_has_the_ball_is_where_it_is_heading_as_it_does():
     assert value("x", "pos2", holds, (), belief).lower == pytest.approx(0.33 * math.cos(0.5))
 
 
+@pytest.mark.parametrize("achieved", [(("ball", "pos3"),), (("atball", "pos3"),)])
+def test_a_ball_brought_to_the_target_is_at_its_place_though_the_goal_does_not_name_it_final(achieved):
+    assert [value(q, "pos3", (), achieved) for q in ("x", "y")] == [Interval(1.0, 1.0), Interval(3.0, 3.0)]
+    assert value("phi", "pos3", (), achieved) is None
+    assert value("x", "pos4", (), achieved) is None, "no target"
+
+
 def test_waypoint_is_at_its_place_of_the_scenario_and_its_heading_is_free():
     scenario = Scenario("waypoints", "", {"way1": {"x": 2.0, "y": -1.0}})
     holds = (("route", "home", "way1"),)
@@ -165,6 +172,22 @@ def test_outliers_are_doubted_and_a_moved_robot_is_believed_after_three():
     assert [relocations(SOCCER, each) for each in (SOCCER.initial_belief(), belief, twice, thrice)] == [0, 0, 0, 1]
     later = after(pose_at(2.0, 1.0, 0.0, 2_400_000_000), BALL_AHEAD, belief=thrice, now_ns=2_500_000_000)
     assert relocations(SOCCER, later) == 1
+
+
+def test_balls_stay_where_they_were_in_the_field_while_the_robot_is_carried():
+    at_rest = [pose_at(1.0, -0.5, 0.8, i * 100_000_000) for i in range(1, 20)]
+    second = Sample("ball2", dataclasses.replace(BALL_AHEAD.message, y=0.7), 1_950_000_000, 1)
+    belief = after(*at_rest, BALL_AHEAD, second)
+    carried = after(*(pose_at(-2.0, 1.0, -2.5, (20 + i) * 100_000_000) for i in range(3)), belief=belief)
+    assert carried.relocated == 1
+    assert carried.ball_xy == pytest.approx(belief.ball_xy, abs=0.01)
+    assert carried.ball2_xy == pytest.approx(belief.ball2_xy, abs=0.01)
+    assert math.hypot(carried.ball.ahead, carried.ball.left) == pytest.approx(math.dist(belief.ball_xy, (-2.0, 1.0)))
+
+
+def test_a_ball_that_was_seen_before_the_first_pose_is_where_it_was_seen_from():
+    belief = after(BALL_AHEAD, pose_at(1.0, -0.5, 0.0, 2_000_000_000))
+    assert (belief.ball.ahead, belief.ball.left) == (BALL_AHEAD.message.x, BALL_AHEAD.message.y)
 
 
 def test_two_percepts_within_a_millisecond_make_no_fast_ball():
