@@ -19,6 +19,7 @@ from tailor.executive.interfaces.values import Array
 
 TICK_S = 0.1  # the controller's period
 SEEKING_NS = 8_000_000_000  # limit of a search; a full turn takes 7 s
+LONGEST_NS = 200_000_000  # of a search, between two calls; for longer the executive held the robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +37,8 @@ class Fetching:
     """Controller state while the ball is lost."""
 
     stage: Stage
-    since_ns: int = 0  # start of the search
+    sought_ns: int = 0  # time of the search so far, while the robot was not held
+    called_ns: int = 0  # last call of the search
     far: bool = True  # it was farther off than a ball that lies before the rail as a dribble begins
 
 
@@ -198,11 +200,12 @@ class DribbleBall:
     def _seek(self, state: Any, now_ns: int, belief: BallBelief, ball: BallTrack) -> Control:
         """Turn in one direction until the ball is seen."""
         if not (isinstance(state, Fetching) and state.stage in SEEKING):
-            state = Fetching("seek left" if ball.left > 0.0 else "seek right", now_ns)
-        if now_ns - state.since_ns > SEEKING_NS:
+            state = Fetching("seek left" if ball.left > 0.0 else "seek right", called_ns=now_ns)
+        sought_ns = state.sought_ns + min(now_ns - state.called_ns, LONGEST_NS)
+        if sought_ns > SEEKING_NS:
             return Control(state, (0.0, 0.0), "failed", "the ball was not found")
         _, command = self.fetch(state.stage, ball, 0.0)
-        return Control(state, command)
+        return Control(Fetching(state.stage, sought_ns, now_ns, state.far), command)
 
     def _retrieve(self, stage: Stage, belief: BallBelief, ball: BallTrack, far: bool) -> Control:
         c, s = math.cos(belief.pose.phi), math.sin(belief.pose.phi)

@@ -217,6 +217,13 @@ def test_ball_that_should_be_in_view_and_is_not_is_sought_during_one_turn():
     assert tick > 63, "a full turn at 1 rad/s"
 
 
+def test_time_in_which_the_robot_is_held_is_no_time_of_a_search():
+    hidden, arguments = believing(ball=seen(0.31, 0.05)), goal(2.0, 0.0, 0.0)
+    searching = DRIBBLE(None, 2 * SECOND_NS, hidden, arguments)
+    resumed = DRIBBLE(searching.state, 20 * SECOND_NS, hidden, arguments)
+    assert (resumed.outcome, resumed.command) == ("running", (0.0, 1.0))
+
+
 PACE = Pace(0.75, 0.35, 0.35, 0.20)
 
 
