@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from tailor.executive.belief.angles import wrap
 from tailor.executive.domains.kitchen.belief import KitchenBelief
-from tailor.executive.domains.kitchen.objects import MOVED_M, MOVED_SIGMAS, TURNED_RAD, Thing
+from tailor.executive.domains.kitchen.objects import TURNED_RAD, Thing, is_elsewhere
 
 
 def _objects(before: KitchenBelief, after: KitchenBelief) -> bool:
@@ -16,10 +15,8 @@ def _objects(before: KitchenBelief, after: KitchenBelief) -> bool:
 
 def _is_another(before: Thing, after: Thing) -> bool:
     """Whether it is farther off, in height too, than both are uncertain of, or has turned or fallen."""
-    off_m = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
     turned_rad = max(abs(wrap(after.phi - before.phi)), abs(after.tilt - before.tilt))
-    uncertain_m = MOVED_SIGMAS * math.sqrt(before.var_xy + after.var_xy)
-    return off_m > max(MOVED_M, uncertain_m) or turned_rad > TURNED_RAD
+    return is_elsewhere(before, after) or turned_rad > TURNED_RAD
 
 
 DOUBTS: dict[str, Callable[[KitchenBelief, KitchenBelief], bool]] = {"objects": _objects}

@@ -79,12 +79,15 @@ def _in_map(percept: ObjectPercept, pose: Pose, now_ns: int) -> Thing:
     return Thing(percept.name, x, y, percept.z, wrap(pose.phi + percept.phi), percept.tilt, var_xy, now_ns)
 
 
+def is_elsewhere(old: Thing, new: Thing) -> bool:
+    """Whether an object was moved: it is seen farther off, in height too, than both places are uncertain."""
+    off_m = math.dist((old.x, old.y, old.z), (new.x, new.y, new.z))
+    return off_m > max(MOVED_M, MOVED_SIGMAS * math.sqrt(old.var_xy + new.var_xy))
+
+
 def _fused(old: Thing | None, new: Thing, credible_rad: float) -> Thing:
     """An object as it is believed and seen; one that was moved is where it is seen, one turned points as it does."""
-    if old is None:
-        return new
-    off = math.hypot(new.x - old.x, new.y - old.y)
-    if off > max(MOVED_M, MOVED_SIGMAS * math.sqrt(old.var_xy + new.var_xy)) or abs(new.z - old.z) > MOVED_M:
+    if old is None or is_elsewhere(old, new):
         return new
     gain, turned = old.var_xy / (old.var_xy + new.var_xy), wrap(new.phi - old.phi)
     return Thing(

@@ -41,3 +41,14 @@ def test_the_noise_of_a_far_object_is_none_of_another_one():
     far = replace(percept("stool", 4.0, z=0.6), var_xy=0.01)
     assert not doubted([far], [replace(far, x=4.2, z=0.9)])
     assert doubted([far], [far], [replace(far, x=5.0)])
+
+
+def test_a_far_object_whose_height_is_noise_is_fused_with_what_was_seen_of_it():
+    far = replace(percept("stool", 4.0, z=0.6), var_xy=0.01)
+    seen = believed([far], [replace(far, x=4.2, z=0.9)]).thing("stool")
+    assert seen.var_xy < believed([far]).thing("stool").var_xy
+    assert 0.6 < seen.z < 0.9
+
+
+def test_an_object_that_was_lifted_is_where_it_is_seen_at_once():
+    assert believed([CUP], [CUP], [replace(CUP, z=CUP.z + 0.2)]).thing("cup1").z == CUP.z + 0.2
