@@ -24,6 +24,7 @@ SCRIPTS = (
     "series.js",
     "fieldandseries.js",
     "lanes.js",
+    "stretch.js",
     "timeline.js",
     "graph.js",
     "plan.js",

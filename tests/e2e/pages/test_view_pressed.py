@@ -161,3 +161,53 @@ def test_a_double_click_on_the_timeline_of_a_live_page_shows_all_of_it_again(bro
         browser.wait(f"{first} > 1")
         press(browser, ".hit", times=2)
         browser.wait(f"{first} === 0")
+
+
+LABELS = "[...document.querySelectorAll('#timeline svg > g:first-of-type text')].map((e) => parseFloat(e.textContent))"
+
+
+def test_keys_narrow_and_widen_the_timeline_about_the_shown_moment(browser: Browser, tmp_path, rows) -> None:
+    show(browser, tmp_path / "run.html", page("arm", rows))
+    whole = browser.value(LABELS)
+    browser.press("z")
+    narrow = browser.value(LABELS)
+    assert whole[0] <= narrow[0] <= 1.0 <= narrow[-1] < whole[-1]
+    browser.press("Z", shift=True)
+    assert browser.value(LABELS) == whole
+    browser.press("z")
+    browser.press("0")
+    assert browser.value(LABELS) == whole
+    assert browser.errors == []
+
+
+def test_a_narrowed_timeline_moves_along_with_the_shown_moment(browser: Browser, tmp_path, rows) -> None:
+    show(browser, tmp_path / "run.html", page("arm", rows))
+    browser.press("z")
+    narrow = browser.value(LABELS)
+    browser.press("End")
+    moved = browser.value(LABELS)
+    assert moved[0] > narrow[0]
+    assert moved[-1] > narrow[-1]
+
+
+def test_two_fingers_stretch_the_timeline_and_move_no_time(browser: Browser, tmp_path, rows) -> None:
+    show(browser, tmp_path / "run.html", page("arm", rows))
+    box = "document.querySelector('#timeline svg .hit').getBoundingClientRect()"
+    left, top, width = (browser.value(f"{box}.{each}") for each in ("left", "top", "width"))
+    at, whole = "document.documentElement.dataset.at", browser.value(LABELS)
+
+    def touch(kind: str, *parts: float) -> None:
+        points = [{"x": left + part * width, "y": top + 10, "id": n} for n, part in enumerate(parts)]
+        browser.send("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        browser.frame()
+
+    touch("touchStart", 0.45, 0.55)
+    before = browser.value(at)
+    for apart in (0.1, 0.2, 0.3):
+        touch("touchMove", 0.5 - apart, 0.5 + apart)
+    touch("touchEnd")
+    assert browser.value(at) == before
+    assert browser.value(f"{LABELS}.at(-1) - {LABELS}[0]") < 0.5 * (whole[-1] - whole[0])
+    browser.press("0")
+    assert browser.value(LABELS) == whole
+    assert browser.errors == []

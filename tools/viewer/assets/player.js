@@ -58,9 +58,9 @@ class Player {
     this.newest = this.live ? html("button", { type: "button", onclick: () => this.catchUp(), text: "live" }) : null;
     const keys = html("span", {
       class: "keys",
-      text: "space ← → ⇧ [ ] home end + −",
+      text: "space ← → ⇧ [ ] home end + − z 0",
       title:
-        "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: previous and next event; + and −: speed; shift and wheel over the timeline: zoom",
+        "space: play or pause; arrows: 0.1 s, with shift 1 s; brackets: previous and next event; + and −: speed; z, with shift Z, or shift and wheel over the timeline: narrow and widen; 0: show all",
     });
     document
       .getElementById("player")

@@ -1,4 +1,4 @@
-// Everything over one axis of time: actions, events, speed, tick timing, granted checks; drag to move, wheel to zoom.
+// Everything over one axis of time: actions, events, speed, tick timing, granted checks; drag to move.
 
 const MARGINS = { left: 80, right: 54 }; // of the lanes, for words on both sides
 
@@ -7,19 +7,18 @@ class Timeline {
     this.run = run;
     this.panel = target;
     this.player = player;
-    this.window = null; // [from, to] when zoomed
+    this.stretch = new Stretch(run, player);
     this.drawn = "";
     this.listen(this.panel.body);
   }
 
-  /** The stretch of time that is shown; a live page shows the last minute. */
+  /** From and to of what is shown, s. */
   view() {
-    if (this.window) return this.window;
-    const from = this.player.live ? Math.max(this.run.start, this.run.end - 60) : this.run.start;
-    return [from, Math.max(this.run.end, from + 1)];
+    return this.stretch.view();
   }
 
   show(at) {
+    this.stretch.follow(at);
     const view = this.view();
     this.width = this.panel.body.clientWidth || this.width || 1240; // a folded panel has none
     const key = `${this.run.version} ${view} ${this.width}`;
@@ -134,44 +133,19 @@ class Timeline {
     return `${rows.length} ticks · work p50 ${ms(quantile(work, 0.5))}, p99 ${ms(quantile(work, 0.99))} · late p99 ${ms(quantile(late, 0.99))}, max ${ms(quantile(late, 1))} · ${missed} missed`;
   }
 
-  /** Listen on the panel, which stays: a live page draws anew between a press and the next, so without a dblclick. */
+  /** Listen on the panel, which stays: a live page draws anew between a press and the next. */
   listen(body) {
     const at = (event) => {
       const box = this.drawing.getBoundingClientRect();
       return this.x.invert(((event.clientX - box.left) / box.width) * this.width);
     };
     body.addEventListener("pointerdown", (event) => {
-      this.dragging = true;
-      this.player.go(at(event));
+      this.dragging = event.isPrimary;
+      if (this.dragging) this.player.go(at(event));
     });
     body.addEventListener("pointermove", (event) => {
-      if (this.dragging && event.buttons) this.player.go(at(event));
+      if (this.dragging && event.buttons && !this.stretch.isPinched()) this.player.go(at(event));
     });
-    const showAll = () => {
-      this.window = null;
-      this.player.refresh();
-    };
-    body.addEventListener("dblclick", showAll);
-    body.addEventListener("mousedown", ({ detail }) => detail === 2 && showAll()); // without a dblclick, see above
-    body.addEventListener(
-      "wheel",
-      (event) => {
-        if (!event.ctrlKey && !event.shiftKey) return; // plain scrolling stays the page's
-        event.preventDefault();
-        this.zoom(at(event), event.deltaY + event.deltaX > 0 ? 1.25 : 0.8);
-      },
-      { passive: false },
-    );
-  }
-
-  /** Widen or narrow the shown stretch about a moment. */
-  zoom(about, factor) {
-    const [from, to] = this.view();
-    const next = [about + (from - about) * factor, about + (to - about) * factor];
-    const whole = next[0] <= this.run.start && next[1] >= this.run.end;
-    this.window = whole
-      ? null
-      : [Math.max(this.run.start, next[0]), Math.min(this.run.end, Math.max(next[1], next[0] + 0.5))];
-    this.player.refresh();
+    this.stretch.listen(body, at);
   }
 }
