@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any, get_args
+from typing import Any
 from warnings import warn
 
 from unified_planning.engines import Engine
@@ -23,7 +23,6 @@ from unified_planning.model import ProblemKind
 from unified_planning.plans import PlanKind
 
 from tailor.executive.planning import (
-    EngineName,
     Result,
     Settings,
     UndecidedError,
@@ -33,8 +32,9 @@ from tailor.executive.planning import (
 )
 from tailor.executive.planning.settings import MAX_TICK_S, MIN_TICK_S
 from tailor.schemas.errors import UsageError
-from tailor.tools.plan_search.limits import GROUND_LIMIT, MAX_PLANS, Limits
+from tailor.tools.plan_search.limits import Limits
 from tailor.tools.up_engine import NAME
+from tailor.tools.up_engine.parameters import checked
 from tailor.tools.up_engine.searches import Improvement, once
 from tailor.tools.up_engine.supported import supported_kind
 from tailor.tools.up_engine.time_rules import broken_rule
@@ -49,21 +49,20 @@ class TailorEngine(Engine, OneshotPlannerMixin, AnytimePlannerMixin, PlanValidat
 
     Args:
       memory_mb: Limit of the memory that a search takes.
-      **settings: Fields of `Settings`, e.g. engine="pocl", node_limit=10_000, flaw_orders=(FlawOrder("LCFR"),).
+      **settings: Fields of `Settings`, e.g. engine="pocl", node_limit=10_000, flaw_orders=["LCFR"].
 
     Raises:
-      UsageError: `engine` is none of the built-in planner.
+      UsageError: A parameter has no such name, or a value of another type or range.
     """
 
     def __init__(self, memory_mb: float = 512.0, **settings: Any) -> None:
         Engine.__init__(self)
         OneshotPlannerMixin.__init__(self)
         AnytimePlannerMixin.__init__(self)
-        engine = settings.get("engine", "auto")
-        if engine not in get_args(EngineName):
-            raise UsageError(f"engine {NAME}: expected {' or '.join(get_args(EngineName))}, found {engine!r}")
+        if isinstance(memory_mb, bool) or not isinstance(memory_mb, (int, float)) or not memory_mb > 0.0:
+            raise UsageError(f"engine {NAME}: expected memory_mb to be a number of MB, found {memory_mb!r}")
         self._memory_mb = memory_mb
-        self._settings = {"ground_limit": GROUND_LIMIT, "node_limit": MAX_PLANS, **settings}
+        self._settings = checked(settings)
 
     @property
     def name(self) -> str:

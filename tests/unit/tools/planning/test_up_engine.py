@@ -175,6 +175,29 @@ def test_an_engine_that_is_not_built_in_is_refused():
         OneshotPlanner(name="tailor", params={"engine": "kairos"})
 
 
+@pytest.mark.parametrize(
+    ("params", "complaint"),
+    [
+        ({"node_limits": 50}, "found 'node_limits'"),
+        ({"node_limit": "many"}, "another type"),
+        ({"flaw_orders": 3}, "expected flaw_orders to be a list, found 3"),
+        ({"flaw_orders": [3]}, "another type"),
+        ({"rankings": ["SHORTEST"]}, "SHORTEST"),
+        ({"memory_mb": "512"}, "memory_mb"),
+        ({"weight": -1.0}, "expected a weight"),
+    ],
+)
+def test_parameters_are_checked_when_the_engine_is_made(params, complaint):
+    with pytest.raises(UsageError, match=complaint):
+        OneshotPlanner(name="tailor", params=params)
+
+
+@pytest.mark.parametrize("orders", ["LCFR", ["LCFR"], ("UCPOP", "LCFR")])
+def test_flaw_orders_may_be_texts(orders):
+    with OneshotPlanner(name="tailor", params={"flaw_orders": orders, "rankings": "ADDR"}) as planner:
+        assert planner.solve(get_example_problems()["basic"].problem).status is Status.SOLVED_SATISFICING
+
+
 def lasting(duration_s):
     """One action that reaches the goal at its end."""
     problem = Problem("lasting")
