@@ -9,11 +9,13 @@ from tailor.executive.domains.arm import belief as believing
 from tailor.executive.domains.arm import predicates
 from tailor.executive.domains.arm.action_library import ACTIONS, EXECUTABLES
 from tailor.executive.domains.arm.belief import ArmBelief
-from tailor.executive.domains.arm.robot import JOINTS, V_MAX_RADPS
+from tailor.executive.domains.arm.robot import ANGLE_MAX_RAD, JOINTS, V_MAX_RADPS
 from tailor.executive.interfaces.action import Action
 from tailor.executive.interfaces.domain import Axis, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Fact, Interval
-from tailor.schemas.messages import JointCommand, Message, Sample
+from tailor.schemas.messages import JointCommand, JointState, Message, Sample
+
+BEYOND_RAD = ANGLE_MAX_RAD + 0.2  # soft ends give, and encoders err
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,13 @@ class ArmDomain:
     def ready(self, belief: ArmBelief) -> bool:
         """Whether an encoder reading has been received."""
         return belief.seen_ns is not None
+
+    def measurement_fault(self, belief: ArmBelief, message: Message) -> str:
+        """Why a joint state is no measurement: the ends of the writing joints stop them."""
+        if not isinstance(message, JointState):
+            return ""
+        rows = ((n, a) for n, a in zip(message.names, message.positions, strict=False) if n in JOINTS)
+        return next((f"has {n} at {a:.3g} rad, beyond its end" for n, a in rows if abs(a) > BEYOND_RAD), "")
 
     def relocations(self, belief: ArmBelief) -> int:
         """How often the joints were found where they cannot have moved to."""

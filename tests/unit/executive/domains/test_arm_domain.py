@@ -14,6 +14,7 @@ from tailor.executive.domains.arm import load as loads
 from tailor.executive.domains.arm.action_library import LIFT_RAD, PAN_RAD, PASSING_RADPS, fastest_radps
 from tailor.executive.domains.arm.belief import ArmBelief
 from tailor.executive.interfaces.budget import CheckBudget
+from tailor.executive.interfaces.domain_results import measurement_fault
 from tailor.executive.refinement.instantiation import instantiate
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import JointState, Sample
@@ -199,3 +200,17 @@ def test_models_get_the_friction_that_is_believed_at_every_waypoint():
     for reach in sequence.actions:
         friction = [sequence.variables[identifier].value for identifier in reach.variables[8:]]
         assert friction == [1.25, loads.TRAINED_FRICTION[1]]  # within what the models were trained on
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "fault"),
+    [
+        (2.0, -2.0, ""),
+        (2.1, 0.0, ""),
+        (0.3 - 2 * np.pi, 0.0, "has pan at -5.98 rad, beyond its end"),
+        (0.0, 1e5, "has lift at 1e+05 rad, beyond its end"),
+    ],
+)
+def test_an_encoder_that_reads_beyond_the_end_of_its_joint_is_not_believed(a, b, fault):
+    """A turn too much had the arm drive back by a turn, which its end stopped."""
+    assert measurement_fault(ARM, ARM.initial_belief(), heard(1, a, b).message) == fault
