@@ -15,7 +15,7 @@ from tailor.executive.interfaces.domain import Axis, LabelQuery, Scenario
 from tailor.executive.interfaces.values import Fact, Interval
 from tailor.schemas.messages import JointCommand, JointState, Message, Sample
 
-BEYOND_RAD = ANGLE_MAX_RAD + 0.2  # soft ends give, and encoders err
+BEYOND_RAD = 1.6 * ANGLE_MAX_RAD  # an arm that was pushed past its ends comes back; a turn too much reads 4.28 or more
 
 
 @dataclass(frozen=True, slots=True)

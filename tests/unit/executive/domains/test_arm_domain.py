@@ -206,7 +206,8 @@ def test_models_get_the_friction_that_is_believed_at_every_waypoint():
     ("a", "b", "fault"),
     [
         (2.0, -2.0, ""),
-        (2.1, 0.0, ""),
+        (2.6, 0.0, ""),  # pushed past its end: it comes back
+        (2 * np.pi - 2.0, 0.0, "has pan at 4.28 rad, beyond its end"),
         (0.3 - 2 * np.pi, 0.0, "has pan at -5.98 rad, beyond its end"),
         (0.0, 1e5, "has lift at 1e+05 rad, beyond its end"),
     ],
