@@ -18,7 +18,7 @@ def episodes_error(episodes: Mapping[str, Any]) -> str:
     sources, files, probe = episodes.get("sources", []), episodes.get("source_files", {}), episodes.get("probe")
     if not isinstance(sources, list) or not all(map(_is_source, sources)):
         return f"episodes' sources are {shown(sources)}, expected objects with the text source_sha256"
-    if not isinstance(files, dict) or not all(map(_are_hashes, files.values())):
+    if not isinstance(files, dict) or not all(map(are_hashes, files.values())):
         return f"episodes' source_files are {shown(files)}, expected hashes by file"
     if probe is not None and not _is_probe(probe):
         return f"episodes' probe is {shown(probe)}, expected seed, stream and the numbers of some ends"
@@ -29,7 +29,8 @@ def _is_source(value: Any) -> bool:
     return isinstance(value, dict) and isinstance(value.get("source_sha256") or "", str)
 
 
-def _are_hashes(value: Any) -> bool:
+def are_hashes(value: Any) -> bool:
+    """Whether a value is an object of texts: hashes by file."""
     return isinstance(value, dict) and all(isinstance(each, str) for each in value.values())
 
 

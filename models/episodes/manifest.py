@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from tailor.models.cards.episodes_shape import are_hashes
 from tailor.models.cards.json_shape import arguments_error, is_count
 from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
@@ -61,7 +62,7 @@ OPTIONAL: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # entries that re
     "calibrates": (lambda value: isinstance(value, bool), "true or false"),
     "on_policy": (_is_of_all, "true or false, or 0 for false"),
     "source_sha256": (lambda value: isinstance(value, str), "text"),
-    "source_files": (lambda value: isinstance(value, dict), "an object"),
+    "source_files": (are_hashes, "an object of hashes by file"),
 }
 
 

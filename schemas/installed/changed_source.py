@@ -16,7 +16,7 @@ def changed_files(episodes: Mapping[str, Any], today: Mapping[str, str]) -> list
       today: Hashes of today's files, see `episode_files`.
     """
     simulated = [each for each in episodes.get("sources", ()) if str(each.get("source", "")).startswith(SIMULATED)]
-    stated = {each["source_sha256"] for each in simulated} & set(episodes.get("source_files", {}))
+    stated = {each.get("source_sha256") for each in simulated} & set(episodes.get("source_files", {}))
     return sorted({name for sha256 in stated for name in differing_files(episodes["source_files"][sha256], today)})
 
 

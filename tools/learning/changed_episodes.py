@@ -42,7 +42,7 @@ def changed_episodes_warning(request: TrainingRequest) -> str:
 
 
 def _changed(folders: Sequence[Path], robot: str) -> dict[Path, list[str]]:
-    """Changed files of those data sets that have any."""
+    """Changed files of those data sets of the robot that have any."""
     if robot not in robot_names():
         return {}
     today = episode_files(spec_of_robot(robot).name)
@@ -50,5 +50,6 @@ def _changed(folders: Sequence[Path], robot: str) -> dict[Path, list[str]]:
     found = {
         folder: changed_files({"sources": [each], "source_files": source_files([each])}, today)
         for folder, each in manifests.items()
+        if each["robot"] == robot  # training refuses the others
     }
     return {folder: files for folder, files in found.items() if files}

@@ -173,7 +173,9 @@ def reproduction_command(
     train += f" --learner {request.learner} --failure-learner {request.failure_learner}"
     train += f" --clearance-learner {request.clearance_learner} --seed {request.seed}"
     gathering = [
-        f"{_gather_command(robot, manifest)} --out {_words([path.parent])}" for path, manifest in manifests.items()
+        f"{_gather_command(robot, manifest)} --out {_words([path.parent])}"
+        for path, manifest in manifests.items()
+        if "recordings" in manifest or manifest.get("seed") is not None  # no command makes what others wrote
     ]
     return " && ".join([*gathering, train])
 

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from tailor.executive import domains
+from tailor.models.cards.card import KINDS
 from tailor.schemas.errors import UsageError
 from tailor.schemas.installed import robot_names, spec_of_robot
 from tailor.tools.learning.training_request import (
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from tailor.models.training.training import Trained
 
     Train = Callable[[Sequence[Episode], FeatureSpace, str, int], Trained]
+    Job = tuple[DataSet, str, str, Train, FeatureSpace]  # episodes, kind, learner
 
 MIN_FAILURE_SHARE = 0.02  # of the episodes: fewer failures are too few to learn from
 MIN_APART = 100  # finished ones, beside objects and without: fewer do not determine intervals of their own
@@ -62,6 +64,8 @@ def train_models(
     _check_own_spaces(request.robot)
     (request.zoo / request.robot).mkdir(parents=True, exist_ok=True)  # fails before hours of training, not after
     rows: list[dict[str, Any]] = []
+    for folders in sets.values() if len(sets) > 1 else ():  # a fault of a later one's would be found after the first
+        _read(folders, request)
     for number, (action, folders) in enumerate(sets.items()):
         on_action(action, number, len(sets))
         rows.extend(train_action(folders, request))
@@ -103,8 +107,28 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     Raises:
       UsageError: The episodes cannot be read, are of another robot, or are too few.
     """
+    jobs, command = _read(folders, request)
+    kinds = [kind for _, kind, *_ in jobs]
+    for source, kind, learner, train, space in (job for job in jobs if not request.kinds or job[1] in request.kinds):
+        with _named(folders):
+            trained = train(source.episodes, space, learner, request.seed)
+        _publish(request, source, trained, kind, learner, space, command)
+        action = source.manifest["action"]
+        if kind == "duration" and "duration_beside" not in kinds:
+            _remove_beside(request, action)
+        yield {"robot": request.robot, "action": action, "kind": kind, **trained.test}
+
+
+def _read(folders: Sequence[Path], request: TrainingRequest) -> tuple[list[Job], str]:
+    """The models that the episodes of one action suffice for, and the command that reproduces them.
+
+    Raises:
+      UsageError: The episodes cannot be read or do not mix, their arguments do not fit the feature spaces, or fewer
+        finished than a model of durations takes.
+    """
     from tailor.models.episodes.context_columns import without_context
     from tailor.models.episodes.episodes import merge, read_data_set
+    from tailor.models.training.training import check_count
 
     sets = [read_data_set(folder) for folder in folders]
     alone = [each for each in sets if not each.manifest.get("objects")]  # a run counts once, not once for every object
@@ -113,17 +137,11 @@ def train_action(folders: Sequence[Path], request: TrainingRequest) -> Iterator[
     spaces = spaces_by_kind(request, data.names, folders[0])
     with _named(folders):
         _check_columns(spaces.values(), own, data)
+        jobs = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
+        if jobs and "duration" in (request.kinds or KINDS):
+            check_count(_learned(data), "finished")
     manifests = {folder: each.manifest for folder, each in zip(folders, sets, strict=True)}
-    command = reproduction_command(request, spaces, manifests)
-    jobs = [(data, kind, learner, train, spaces[kind]) for kind, learner, train in own_jobs(data, request)]
-    every = (*jobs, *context_jobs(sets, request, folders[0]))
-    for source, kind, learner, train, space in (job for job in every if not request.kinds or job[1] in request.kinds):
-        with _named(folders):
-            trained = train(source.episodes, space, learner, request.seed)
-        _publish(request, source, trained, kind, learner, space, command)
-        if kind == "duration" and all(job[1] != "duration_beside" for job in jobs):
-            _remove_beside(request, data.manifest["action"])
-        yield {"robot": request.robot, "action": data.manifest["action"], "kind": kind, **trained.test}
+    return [*jobs, *context_jobs(sets, request, folders[0])], reproduction_command(request, spaces, manifests)
 
 
 @contextmanager
@@ -155,9 +173,7 @@ def _remove_beside(request: TrainingRequest, action: str) -> None:
         path.unlink()
 
 
-def context_jobs(
-    sets: Sequence[DataSet], request: TrainingRequest, folder: Path
-) -> Iterator[tuple[DataSet, str, str, Train, FeatureSpace]]:
+def context_jobs(sets: Sequence[DataSet], request: TrainingRequest, folder: Path) -> Iterator[Job]:
     """The model of success beside one object, if the episodes have objects."""
     from tailor.models.episodes.context_columns import beside_context, run_numbers
     from tailor.models.episodes.episodes import merge
@@ -185,7 +201,7 @@ def own_jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str
 
     if data.manifest.get("objects"):
         return
-    learned = [episode for episode in data.episodes if episode.finished and not episode.calibrates]
+    learned = _learned(data)
     beside = [episode.in_context for episode in learned]
     if min(beside.count(True), beside.count(False)) >= MIN_APART:
         yield "duration", request.learner, training.train_duration_alone
@@ -202,6 +218,11 @@ def own_jobs(data: DataSet, request: TrainingRequest) -> Iterator[tuple[str, str
         yield "success", request.failure_learner, success_training.train_success
     elif _needs_success(request.robot, data):
         yield "success", NEVER_FAILED, success_training.train_success
+
+
+def _learned(data: DataSet) -> list[Episode]:
+    """Episodes that durations and energies are learned from."""
+    return [episode for episode in data.episodes if episode.finished and not episode.calibrates]
 
 
 def _beside_objects(

@@ -209,6 +209,7 @@ def test_a_part_knows_which_episodes_were_decided_beside_objects_and_an_older_on
         ("context", {"names": "x"}, "expected names of columns, and a failure"),
         ("source_sha256", [], "source_sha256 is [], expected text"),
         ("source_files", [1], "source_files is [1], expected an object"),
+        ("source_files", {"body.py": 1}, "source_files is {'body.py': 1}, expected an object of hashes by file"),
     ],
 )
 def test_a_manifest_that_is_not_one_says_what_is_wrong(folder: Path, key: str, value: object, message: str) -> None:

@@ -52,6 +52,10 @@ def test_nothing_is_said_of_todays_source_of_recorded_runs_and_of_an_unknown_rob
     assert warning("today") == ""
     assert warning("before") != ""
     assert warning("before", "elsewhere") == ""
+    assert warning("before", "agilo") == ""  # training refuses the arm's episodes
+    unstated = {"robot": "powercube", "action": "reach", "source": "lock-step, random arguments", "arguments": COLUMNS}
+    write_manifest(data / "before" / "reach", unstated)
+    assert warning("before") == ""
     recorded = {"robot": "powercube", "action": "reach", "source": "recordings", "arguments": COLUMNS}
     write_manifest(data / "before" / "reach", {**recorded, "source_sha256": "other"})
     assert warning("before") == ""

@@ -57,6 +57,14 @@ def test_a_merged_data_set_names_all_its_sources(data) -> None:
     assert {s["source_sha256"] for s in sources} == data.manifest["source_files"].keys()
 
 
+def test_a_source_without_a_hash_is_unknown(card, altered) -> None:
+    """The check and `tailor up` ended in a KeyError."""
+    del card["episodes"]["sources"][1]["source_sha256"]
+    assert changed_files(card["episodes"], altered) == [REACH]
+    del card["episodes"]["sources"][0]["source_sha256"]
+    assert changed_files(card["episodes"], altered) == []
+
+
 def test_a_model_of_todays_source_is_not_stale(card) -> None:
     assert staleness_of(card) == ""
     assert differing_episodes(card) == ""

@@ -221,6 +221,38 @@ def test_a_feature_that_is_not_finite_is_refused_before_training(tmp_path, monke
         train_models(TrainingRequest("agilo", tmp_path / "zoo", data=(tmp_path,), learner="linear"))
 
 
+@pytest.mark.parametrize(
+    ("entries", "part", "message"),
+    [
+        (
+            {"arguments": [{"name": "x", "unit": "m", "lower": 0, "upper": 1}]},
+            True,
+            "turn: arguments are x, expected x y",
+        ),
+        ({}, False, "turn: 0 finished episodes, expected at least 40"),
+    ],
+)
+def test_data_of_a_later_action_is_refused_before_a_model_is_replaced(entries, part, message, tmp_path, monkeypatch):
+    """The models of the first action were replaced, and the zoo was left with some of both trainings."""
+    written(tmp_path / "goToPose", 1)
+    written(tmp_path / "turn", 2, action="turn", **entries)
+    if not part:
+        (tmp_path / "turn" / "part-000000.parquet").unlink()
+    monkeypatch.setattr(training_run, "_publish", lambda *_: pytest.fail("written"))
+    with pytest.raises(UsageError) as caught:
+        train_models(TrainingRequest("agilo", tmp_path / "zoo", data=(tmp_path,), learner="linear"))
+    assert str(caught.value).startswith(f"{tmp_path}/{message}")
+
+
+def test_a_card_names_no_gathering_of_episodes_that_others_wrote() -> None:
+    """A converter's manifest has no seed: the card named `tailor gather … --episodes None --seed None`."""
+    request, folder = TrainingRequest("agilo", Path()), Path("data/agilo/goToPose")
+    command = reproduction_command(
+        request, spaces_by_kind(request, NAMES[:8], folder), {folder: {"action": "goToPose"}}
+    )
+    assert command.startswith("tailor train agilo goToPose ")
+
+
 def test_a_copy_beside_the_data_set_of_a_named_action_does_no_harm(tmp_path: Path) -> None:
     written(tmp_path / "goToPose", 1)
     written(tmp_path / "goToPose-old", 2)
@@ -247,7 +279,7 @@ def test_a_model_that_fails_its_own_checks_does_not_replace_the_former_one(tmp_p
     publishing = training_run._publish
 
     def published(request, data, *others) -> None:
-        files = {data.manifest["source_sha256"]: {"a.py": 5}}  # no hash, which no check of a manifest sees
+        files = {data.manifest["source_sha256"]: {"a.py": 5}}  # no hash, put there behind the check of the manifest
         publishing(request, replace(data, manifest={**data.manifest, "source_files": files}), *others)
 
     monkeypatch.setattr(training_run, "_publish", published)
