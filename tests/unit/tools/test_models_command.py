@@ -311,6 +311,14 @@ def test_training_ends_with_the_folder_of_its_models(tmp_path: Path, monkeypatch
     assert capsys.readouterr().out.splitlines()[-1] == f"models in {tmp_path / 'agilo'}"
 
 
+@pytest.mark.parametrize(("flags", "progress"), [([], ["training goToPose: 0 of 1"]), (["--json"], [])])
+def test_training_that_prints_json_shows_no_progress(flags, progress, tmp_path: Path, monkeypatch, capsys) -> None:
+    """As `gather --json`: a script that reads an error from standard error found another line before it."""
+    monkeypatch.setattr(train, "train_models", lambda request, on_action: [on_action("goToPose", 0, 1)][:0])
+    assert main(["train", "agilo", "--zoo", str(tmp_path), *flags]) == 0
+    assert capsys.readouterr().err.splitlines() == progress
+
+
 @pytest.mark.parametrize("layout", ["courier_robot", "src/courier_robot"])
 def test_training_makes_the_folder_of_models_in_the_checkout_of_a_robots_package(
     tmp_path: Path, layout: str, monkeypatch

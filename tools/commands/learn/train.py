@@ -66,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--clearance-learner", default=DEFAULT_CLEARANCE_LEARNER,
         help="learner of successes beside an object, one of the same (default: %(default)s)")  # fmt: skip
     add("--seed", type=at_least(0, "--seed"), default=1, help="random seed (default: %(default)s)")
-    add("--json", action="store_true", help="print the test results as JSON")
+    add("--json", action="store_true", help="print the test results as JSON, without progress bar")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
     request = checked(request)
     if warning := changed_episodes_warning(request):
         print(f"warning: {warning}", file=sys.stderr)
-    rows = _trained(request)
+    rows = _trained(request, quiet=arguments.json)
     if arguments.json:
         print(json.dumps(rows))
     else:
@@ -99,10 +99,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _trained(request: TrainingRequest) -> list[dict[str, Any]]:
-    """Rows of the trained models; a bar counts the actions."""
+def _trained(request: TrainingRequest, quiet: bool) -> list[dict[str, Any]]:
+    """Rows of the trained models; a bar counts the actions, unless `quiet`."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    lines = ProgressLines()
+    lines = ProgressLines(quiet)
     with lines.bars(*columns, transient=True) as progress:
         bar = progress.add_task("reading data sets", total=None)
 
