@@ -16,6 +16,11 @@ MISTAKES = {
     "NameError: name 'X' is not defined (sampler.py, line ": ("sampler.py", "hypot(xg - x,", "hypot(xg - X,"),
     "KeyError: 'v' (sampler.py, line ": ("sampler.py", '("x", "y", "phi", "v")', '("x", "y", "phi", "w")'),
     "sample of drive has the shape (7,), expected (8,)": ("sampler.py", "return arguments\n", "return arguments[:7]\n"),
+    "sample of drive returned a list, expected an array": (
+        "sampler.py",
+        "return arguments\n",
+        "return arguments.tolist()\n",
+    ),
     "arguments_now of drive has the shape (7,), expected (8,)": (
         "sampler.py",
         "pose.phi, max(0.0, belief.v),",

@@ -43,6 +43,8 @@ def _try_action(body: Body, domain: Domain, action: str) -> None:
     rng = np.random.default_rng(0)
     arguments, expected = sample_arguments(domain, action, rng), len(domain.actions[action].parameters)
     where = f"sampler of {domain.name}"
+    if not isinstance(arguments, np.ndarray):
+        raise UsageError(f"{where}: sample of {action} returned a {type(arguments).__name__}, expected an array")
     if np.shape(arguments) != (expected,):
         raise UsageError(f"{where}: sample of {action} has the shape {np.shape(arguments)}, expected ({expected},)")
     _check_finite(f"{where}: sample of {action}", domain, action, arguments)

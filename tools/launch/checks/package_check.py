@@ -120,8 +120,7 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
     yield from _faults_of_subgoal(domain, action)
     if not action.parameters:
         yield "parameters is empty, expected at least one: models and progress of an action are about its parameters"
-    names = [parameter.name for parameter in action.parameters]
-    yield from (f"parameter '{name}' occurs twice" for name in sorted({n for n in names if names.count(n) > 1}))
+    yield from _repeated(action)
     for parameter in action.parameters:
         if not (
             math.isfinite(parameter.lower) and math.isfinite(parameter.upper) and parameter.lower <= parameter.upper
@@ -129,6 +128,18 @@ def _faults_of_action(domain: Domain, action: Action) -> Iterator[str]:
             yield f"parameter '{parameter.name}' ranges from {parameter.lower:g} to {parameter.upper:g}"
         elif parameter.period == 0.0:
             yield f"parameter '{parameter.name}' is periodic, but ranges from {parameter.lower:g} to the same"
+
+
+def _repeated(action: Action) -> Iterator[str]:
+    """Names that occur twice, and parameters that would always have one value: a robot drives to (x, x)."""
+    names = [parameter.name for parameter in action.parameters]
+    yield from (f"parameter '{name}' occurs twice" for name in sorted({n for n in names if names.count(n) > 1}))
+    first: dict[tuple[int, str], str] = {}
+    for each in action.parameters:
+        other = first.setdefault((each.argument, each.quantity), each.name)
+        if other != each.name:
+            what = f"the quantity '{each.quantity}' of argument {each.argument}"
+            yield f"parameters '{other}' and '{each.name}' are both {what}, expected one parameter for it"
 
 
 def _faults_of_subgoal(domain: Domain, action: Action) -> Iterator[str]:

@@ -164,6 +164,9 @@ FAULTS = {
         arguments=lambda values: {}["x"]
     ),
     "occurs twice": lambda: changed(parameter={"name": domains.load("soccer").actions["goToPose"].parameters[1].name}),
+    "parameters 'x' and 'y' are both the quantity 'y' of argument 0, expected one parameter for it": lambda: changed(
+        parameter={"quantity": "y"}
+    ),
     "ranges from nan to": lambda: changed(parameter={"lower": NAN}),
     "is periodic, but ranges from 1 to the same": lambda: changed(
         parameter={"lower": 1.0, "upper": 1.0, "periodic": True}
