@@ -20,7 +20,7 @@ LEAST_PCT = 0.01  # gaps are drawn on a logarithmic axis
 
 
 def curves(quick: bool) -> Iterator[Curve]:
-    """Mean gap of the executive's solver over fresh tasks, after as much CPU time as a tick grants."""
+    """Mean gap of the chain solver over fresh tasks, after as much CPU time as a tick grants."""
     models = Models(*load_robot("agilo"))
     tasks = cases(models, QUICK_TASKS if quick else TASKS, fresh_seed("soccer").seed)
     points = []

@@ -13,7 +13,7 @@ from tailor.tools.learning.gathering.choosing_models import models_hash
 from tailor.tools.learning.gathering.data_set_spec import EVALUATION_STREAM, TRAINING_STREAM, DataSetSpec
 from tailor.tools.learning.gathering.policy_runs import Policy, run_policy
 
-FIRST_RUN_SEED, RUN_SEEDS = 1000, 1_000_000  # of the executive's runs; models are trained with smaller ones
+FIRST_RUN_SEED, RUN_SEEDS = 1_000_000, 1_000_000  # of the executive's runs; models are trained with smaller ones
 
 
 def run_seed(first: int) -> int:

@@ -78,3 +78,7 @@ def test_too_few_random_episodes_are_refused_before_any_run(evaluated, monkeypat
     code, _, err = evaluated(3, random=30)
     assert code == 2
     assert err.endswith("data/approachBall: 30 finished episodes, expected at least 40\n")
+
+
+def test_runs_that_judge_have_no_seed_that_models_are_trained_with() -> None:
+    assert min(map(fresh.run_seed, (0, 1, 999_999, 1_000_000, 2**28))) >= 1_000_000
