@@ -160,13 +160,16 @@ def _with_mode(context: Context, state: State, clock_fault: Cause | None) -> Sta
 
 
 def _paused(state: State, passed_ns: int) -> State:
-    """While the executive holds, the clock of the running action stands still: waiting is no failure of the action."""
-    running = state.task.running
-    if state.mode is not Mode.HOLDING or running is None:
+    """While the executive holds, its clocks stand still: waiting is no failure of an action, and confirms no doubt."""
+    task, running = state.task, state.task.running
+    if state.mode is not Mode.HOLDING:
         return state
+    if running is None:
+        until_ns = task.doubted_until_ns and task.doubted_until_ns + passed_ns
+        return replace(state, task=replace(task, doubted_until_ns=until_ns))
     if state.deliberation is not None:
         state.deliberation.pause(passed_ns)
-    return replace(state, task=replace(state.task, running=replace(running, started_ns=running.started_ns + passed_ns)))
+    return replace(state, task=replace(task, running=replace(running, started_ns=running.started_ns + passed_ns)))
 
 
 def _with_fault(topic: str, fault: str) -> str:

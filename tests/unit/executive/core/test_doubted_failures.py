@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tailor.executive.core.adoption import DOUBT_NS
+from tailor.executive.core.modes import Mode
 from tailor.executive.deliberation.context import Settings
 from tailor.executive.interfaces.domain import Conflict
 from tailor.executive.interfaces.reasons import Reason, Result
@@ -83,6 +84,15 @@ def test_a_later_failure_is_doubted_anew():
     waiting = [tick for tick, (state, _) in enumerate(found, 1) if state.task.doubted_until_ns]
     assert waiting[:2] == [1, 2]
     assert failed[0] - waiting[2] == DOUBTED
+
+
+@pytest.mark.promise("P30")
+@pytest.mark.parametrize("domain", [WatchingLine, BlindLine])
+def test_time_in_which_the_executive_holds_confirms_no_failure(domain):
+    found = run(lambda tick: tick <= 13, domain(), ticks=100, late=(2, 3, 4))
+    holding = [tick for tick, (state, _) in enumerate(found, 1) if state.mode is Mode.HOLDING]
+    assert holding == list(range(4, 12)), "for longer than the doubt; the percepts are wrong a little longer"
+    assert found[-1][0].task.result == "achieved"
 
 
 def test_a_limit_of_the_search_is_no_matter_of_percepts():

@@ -86,11 +86,11 @@ def context_of(domain):
     return make_context(domain, scenario, Models({"slide/duration": LineModel()}, {}), Settings(), SENDER)
 
 
-def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick: 2000, slow=(), goal=""):
+def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick: 2000, slow=(), goal="", late=()):
     """The states and messages of ticks; `lost` tells at which ticks the fact is not observed.
 
     `moved` tells how far the places are from where they were, `checks` how many are granted, `slow` when every other
-    sample is missing.
+    sample is missing, `late` before which ticks a period was lost.
     """
     context = replace(context_of(domain or WatchingLine()), sensor_rates_hz={"odom": 50.0})
     state, x, found, number = initial_state(context), 0.0, [], 0
@@ -98,7 +98,8 @@ def run(lost, domain=None, ticks=60, moved=lambda tick: 0.0, checks=lambda tick:
         number += 2 if tick in slow else 5
         seen = odometry(tick * TICK, x, tick, moved(tick))
         seen = replace(seen, sequence=number, message=replace(seen.message, phi=float(lost(tick))))
-        given = Inputs((seen, driver(tick * TICK)), (goal or context.problem.goal_text) if tick == 1 else "")
+        wanted = (goal or context.problem.goal_text) if tick == 1 else ""
+        given = Inputs((seen, driver(tick * TICK)), wanted, skipped=int(tick in late))
         state, outputs = step(context, state, tick * TICK, given, CheckBudget(checks(tick)))
         found.append((state, [output.message for output in outputs]))
         x += 0.1 * state.command[0]
