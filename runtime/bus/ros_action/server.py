@@ -12,6 +12,7 @@ from tailor.schemas.messages import ExecStatus
 from tailor.schemas.ros2 import action_messages as messages
 from tailor.schemas.ros2.action import achieve_goal
 from tailor.schemas.ros2.action_messages import CancelCode, GoalInfo, GoalResult, GoalState
+from tailor.schemas.ros_time import wrapped_ns
 from tailor.schemas.services import DROP
 
 MAX_WAITING = 16  # requests for the result of an open goal
@@ -67,7 +68,7 @@ class GoalAction:
         if isinstance(sent, Rejected) or self._goals.get(sent[0]) is not None:
             call.respond(messages.sent_response(False, wall_ns()))
             return None
-        goal = GoalInfo(sent[0], wall_ns())
+        goal = GoalInfo(sent[0], wrapped_ns(wall_ns()))  # as its client reads it, and names it to cancel
 
         def respond(accepted: bool, text: str) -> None:
             # ROS 2 has no reason for a rejected goal: one that is refused is accepted, and aborted with the cause.

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tailor.runtime.bus.ros_action import server
 from tailor.runtime.bus.ros_action.goals import KEPT
 from tailor.runtime.bus.ros_action.server import MAX_WAITING, GoalAction
 from tailor.schemas.messages import ExecStatus
@@ -146,7 +147,9 @@ def test_a_client_cancels_its_goal_or_all(client, action, named):
     assert result(client, action).response.status == GoalState.CANCELED
 
 
-def test_goals_until_a_time_are_cancelled(client, action):
+@pytest.mark.parametrize("year", [2026, 2040])
+def test_goals_until_a_time_are_cancelled(client, action, monkeypatch, year):
+    monkeypatch.setattr(server, "wall_ns", lambda: (year - 1970) * 31_556_952 * 10**9)
     stamp = sent(client, action)
     stamp_ns = stamp.sec * 10**9 + stamp.nanosec
     for goal_id in (NOBODY, TWO):
