@@ -17,7 +17,8 @@ MAX_DEPTH = 60  # formulas are walked recursively; no hand-written PDDL nests de
 _new = tuple.__new__  # makes a named tuple in half the time of its constructor
 _TOKEN = re.compile(r";[^\n]*|[()]|[^\s();]+")
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f-\x9f]")  # no name has them: printed, they command a terminal
-_INVISIBLE = re.compile(r"[\xad\u061c\u200b\u200e\u200f\u202a-\u202e\u2060-\u206f\ufeff]")  # two names look like one
+# Two names look like one; no message carries half a character, which Python reads where a command line is no text
+_INVISIBLE = re.compile(r"[\xad\u061c\u200b\u200e\u200f\u202a-\u202e\u2060-\u206f\ud800-\udfff\ufeff]")
 
 
 class Place(NamedTuple):  # a tuple, as Word is: there are two for each word of a text

@@ -206,6 +206,11 @@ def test_a_goal_too_long_for_a_status_is_refused_and_the_longest_one_is_publishe
     assert statuses[-1].goal == longest
 
 
+def test_a_goal_with_half_a_character_is_refused_as_no_status_carries_it():
+    refusal = check_goal(line_context(), "(visited a) ; \udcff")  # of a command line with the byte 0xff
+    assert refusal == Cause(Reason.GOAL_INVALID, "goal:1:15: an invisible character, U+DCFF")
+
+
 def moved_in_tick_6(n, given, x):
     return Inputs((odometry(n * TICK, x, n, 0.3 if n >= 6 else 0.0), driver(n * TICK)), given.goal)
 
