@@ -130,7 +130,7 @@ def _rearmed(known: DriverState | None, now: DriverState) -> bool:
 def _with_goal(context: Context, state: State, goal: str) -> State:
     if drops_goal(context, goal):
         return _without_goal(state)
-    facts = state.task.facts or frozenset(context.problem.initial)
+    facts = state.task.facts if state.task.goal else frozenset(context.problem.initial)  # nothing may hold after a goal
     task = Task(goal=goal, active=True, facts=facts)
     return replace(state, task=task, deliberation=None, fault=None, mode=Mode.READY)
 
