@@ -115,6 +115,7 @@ def test_core_publishes_what_it_published_when_the_golden_was_recorded(name):
     except UsageError as error:
         pytest.fail(f"{name}: {error}; {RENEW}")
     assert verdict.difference is None, f"{name}: {verdict_text(verdict)}; {RENEW}"
+    assert not verdict.lost
     assert verdict.ticks > 20
 
 

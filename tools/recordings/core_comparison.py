@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -15,6 +14,7 @@ from tailor.schemas.messages import Message, RefinementReport
 from tailor.schemas.topics import TOPICS, key_of
 from tailor.tools.recordings.differences import Difference, first_field, rounding_apart, with_proof_of
 from tailor.tools.recordings.executive_run import RecordedRun, decoded
+from tailor.tools.recordings.recorded_outputs import Absent, RecordedOutputs, before_gap
 
 REFINEMENT = TOPICS["refinement"].key
 
@@ -34,11 +34,11 @@ class RunComparison:
         self.ticks = self.compared = self.rounded = 0
         self._robot, self._exact, self._exact_proofs, self._proofs = robot, exact, exact_proofs, proofs
         self._last_tick, self._last_stamp_ns = run.ticks[-1].tick, run.ticks[-1].stamp_ns
-        self._published: dict[str, list[Recorded]] = dict(run.published)
-        self._n_compared: dict[str, int] = defaultdict(int)
+        self._published = {key: RecordedOutputs(messages) for key, messages in run.published.items()}
         self._last_report: Message | None = None  # of refinement, without its gap
         if not proofs and REFINEMENT in run.published:
-            self._published[REFINEMENT] = _without_proofs(run.published[REFINEMENT])
+            whole = before_gap(reports := run.published[REFINEMENT])  # beyond, no number tells which one is which
+            self._published[REFINEMENT] = RecordedOutputs(_without_proofs(whole), len(whole) < len(reports))
 
     def tick(self, tick: int, outputs: tuple[Output, ...]) -> Difference | None:
         """First difference between the recorded outputs of a tick and today's."""
@@ -47,14 +47,13 @@ class RunComparison:
             key = key_of(output.topic, self._robot)
             if not self._proofs and key == REFINEMENT and self._is_repeated(output.message):
                 continue
-            recorded, number = self._published.get(key, []), self._n_compared[key]
-            self._n_compared[key] += 1
-            if number >= len(recorded) and tick == self._last_tick:
-                continue  # the recording ends within this tick
+            recorded = self._published.setdefault(key, RecordedOutputs(())).take()
+            if recorded is Absent.LOST or (recorded is Absent.NONE and tick == self._last_tick):
+                continue  # in the second case the recording ends within this tick
             self.compared += 1
-            if number >= len(recorded):
+            if isinstance(recorded, Absent):
                 return Difference(tick, key, "message", "none", str(output.message))
-            difference = self._message(tick, recorded[number], output.message)
+            difference = self._message(tick, recorded, output.message)
             if difference is not None:
                 return difference
         return None
@@ -64,11 +63,15 @@ class RunComparison:
 
         One of a tick without a report counts as none: its executive ended, or the recording does, within that tick.
         """
-        for key, messages in self._published.items():
-            number = self._n_compared[key]
-            if number < len(messages) and getattr(decoded(messages[number]), "stamp_ns", 0) <= self._last_stamp_ns:
-                return Difference(self.ticks, key, "message", f"number {number + 1}", "none")
+        for key, outputs in self._published.items():
+            following = outputs.following
+            if following is not None and getattr(decoded(following), "stamp_ns", 0) <= self._last_stamp_ns:
+                return Difference(self.ticks, key, "message", f"number {outputs.taken + 1}", "none")
         return None
+
+    def lost(self) -> str:
+        """Outputs that were published and are not recorded, as text; empty if there are none."""
+        return ", ".join(f"{outputs.lost} of {key}" for key, outputs in self._published.items() if outputs.lost)
 
     def _message(self, tick: int, recorded: Recorded, today: Message) -> Difference | None:
         if recorded.data == encode(today):
@@ -97,7 +100,7 @@ def without_proofs(context: Context) -> Context:
 
 
 def _without_proofs(messages: Iterable[Recorded]) -> list[Recorded]:
-    """Refinement reports without their gaps; reports that change nothing else are omitted."""
+    """Refinement reports without gaps and numbers; reports that change nothing else are omitted."""
     kept: list[Recorded] = []
     last: Any = None
     for recorded in messages:
@@ -105,7 +108,7 @@ def _without_proofs(messages: Iterable[Recorded]) -> list[Recorded]:
         assert isinstance(report, RefinementReport)
         before, last = last, _timeless(report)
         if last != before:
-            kept.append(replace(recorded, data=encode(replace(report, gap_pct=-1.0))))
+            kept.append(replace(recorded, sequence=0, data=encode(replace(report, gap_pct=-1.0))))
     return kept
 
 

@@ -42,9 +42,11 @@ class RecordedRuns:
         by_sender = {sender: RecordedRun(sender) for sender in executives(everything)}
         for message in everything:
             # of equal numbers the first one: an executive refuses the others
-            self._inputs.setdefault((message.key, message.sender, message.sequence), message)
+            first = self._inputs.setdefault((message.key, message.sender, message.sequence), message)
             if message.sequence == 0:
                 self._unnumbered[message.key, message.sender] += 1
+            elif first is not message and first.data == message.data:
+                continue  # as in a file that two recordings of one run were merged into
             if message.key != ANSWER_KEY:
                 if message.sender in by_sender:
                     self._add(by_sender[message.sender], message)

@@ -47,6 +47,7 @@ class Verdict:
     took_s: float  # without reading the file, loading models and compiling codecs
     ends: str = ""  # why the comparison ends before the run does; empty if it does not
     source: str = ""  # whether today's source recorded it; empty without a difference
+    lost: str = ""  # outputs that were published and are not recorded, by key; empty if there are none
 
     @property
     def times_real_time(self) -> float:
@@ -97,6 +98,7 @@ def verify(
         took_s,
         ends,
         source_contrast(run.provenance.get("source"), core_source(context.domain.name), kin) if difference else "",
+        comparison.lost(),
     )
 
 
@@ -145,12 +147,13 @@ def verdict_text(verdict: Verdict) -> str:
     """The verdict in one line; further lines on an early end, platforms and ignored messages if there are any."""
     summary = f"{verdict.compared} messages of {verdict.ticks} ticks ({verdict.times_real_time:.0f} times real time)"
     left_out = f"\n  {plain(verdict.left_out)}" if verdict.left_out else ""
+    lost = f"\n  not recorded, thus not compared: {plain(verdict.lost)}" if verdict.lost else ""
     ends = f"\n  not verified to the end: {plain(verdict.ends)}" if verdict.ends else ""
     machines = f"\n  recorded on {plain(verdict.machines)}" if verdict.machines else ""
     if verdict.difference is not None:
-        return f"different: {plain(str(verdict.difference))}\n  {verdict.source}{machines}{left_out}"
+        return f"different: {plain(str(verdict.difference))}\n  {verdict.source}{lost}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
         within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"
-        return f"equal within {within}: {summary}; {rounded}{ends}{machines}{left_out}"
-    return f"equal: {summary}{ends}{left_out}"
+        return f"equal within {within}: {summary}; {rounded}{lost}{ends}{machines}{left_out}"
+    return f"equal: {summary}{lost}{ends}{left_out}"

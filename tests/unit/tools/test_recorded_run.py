@@ -235,3 +235,42 @@ def test_what_an_executive_published_in_the_tick_in_which_it_ended_is_no_differe
     path = written(tmp_path / "a.mcap", [message for message in whole if message is not last])
     assert main(["verify", str(path)]) == 0
     assert capsys.readouterr().out.startswith("equal: ")
+
+
+LOST = "  not recorded, thus not compared: 1 of {}"
+
+
+@pytest.mark.parametrize("flags", [[], ["--without-proofs"]], ids=["all", "without proofs"])
+@pytest.mark.parametrize("key", ["agilo/cmd_vel", "exec/status"])
+def test_an_output_that_a_recording_lost_is_no_difference(tmp_path, capsys, whole, key, flags):
+    """The one after it was compared instead, which verify called a fault of the core."""
+    kept = [m for m in whole if (m.key, m.sequence) != (key, 20)]
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept)), *flags]) == 2
+    verdict, lost, *_ = capsys.readouterr().out.splitlines()
+    assert verdict.startswith("equal: ")
+    assert lost == LOST.format(key)
+
+
+def test_a_difference_after_an_output_that_was_lost_counts(tmp_path, capsys, whole):
+    last = next(m for m in reversed(whole) if m.key == "agilo/cmd_vel")
+    changed = replace(last, data=encode(replace(decode(VelocityCommand, last.data), v=0.123)))
+    kept = [changed if m is last else m for m in whole if (m.key, m.sequence) != (last.key, 20)]
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept))]) == 1
+    assert LOST.format("agilo/cmd_vel") in capsys.readouterr().out.splitlines()
+
+
+def test_without_proofs_reports_are_compared_up_to_one_that_was_lost(tmp_path, capsys):
+    """Reports whose proofs alone are new are omitted there: beyond, their numbers do not tell which one is which."""
+    whole = list(open_recording(GOLDEN.with_name("soccer-waypoints.mcap")).messages())
+    kept = [m for m in whole if (m.key, m.sequence) != ("exec/refinement", 5)]
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept)), "--without-proofs"]) == 2
+    verdict, lost, *_ = capsys.readouterr().out.splitlines()
+    assert verdict.startswith("equal: ")
+    assert re.fullmatch(r"  not recorded, thus not compared: \d of exec/refinement", lost)
+
+
+def test_messages_that_are_recorded_twice_count_once(tmp_path, capsys, whole):
+    """As in a file that two recordings of one run were merged into: ticks were missing, and commands differed."""
+    path = written(tmp_path / "a.mcap", [m for m in whole for _ in range(2)])
+    assert main(["verify", str(path)]) == 0
+    assert main(["compare", str(path), str(GOLDEN)]) == 0

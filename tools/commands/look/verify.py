@@ -40,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick or an input of one.
+    """0 if all runs in the file are equal, 1 if one differs, 2 if the recording lacks a tick, an input or an output.
 
     With --output, which takes the proofs along, that concerns the first run alone.
     """
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"tailor verify: {plain(fault)}", file=sys.stderr)
     if any(verdict.difference for verdict in verdicts):
         return 1
-    return 2 if faults or any(verdict.ends for verdict in verdicts) else 0
+    return 2 if faults or any(verdict.ends or verdict.lost for verdict in verdicts) else 0
 
 
 def _verify_each(runs: RecordedRuns, proofs: bool) -> tuple[list[Verdict], list[str]]:
