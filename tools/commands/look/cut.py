@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0, or 1 if no message was selected."""
+    """0, or 1 if no message was selected; then there is no new file."""
     if not 0 <= arguments.start < MAX_S:
         raise UsageError(f"--from is {arguments.start:g}, expected seconds from 0 on")
     if arguments.end is not None and not arguments.start < arguments.end < MAX_S:
@@ -56,11 +56,17 @@ def run(arguments: argparse.Namespace) -> int:
 
     note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
     copied = copy(recording.path, target, keep, note)
-    found = {"output": str(target), "kept": copied.kept, "left_out": copied.left_out, "damage": copied.damage.text()}
+    if not copied.kept:
+        target.unlink()  # it holds metadata alone, and would be in the way of the next attempt
+    written = str(target) if copied.kept else None
+    found = {"output": written, "kept": copied.kept, "left_out": copied.left_out, "damage": copied.damage.text()}
     if arguments.json:
         print(json.dumps(found))
     else:
         if copied.damage.text():
             print(f"{plain(str(recording.path))}: {copied.damage.text()}")
-        print(f"{plain(str(target))}: {copied.kept} messages of {copied.kept + copied.left_out}")
+        rest = "" if copied.kept else "; no file is written"
+        print(
+            f"{plain(written or str(recording.path))}: {copied.kept} messages of {copied.kept + copied.left_out}{rest}"
+        )
     return 0 if copied.kept else 1

@@ -1,5 +1,7 @@
 """Playback clock, playback, cutting and recovery without a bus."""
 
+import json
+
 import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
@@ -178,6 +180,17 @@ def test_a_cut_of_another_program_s_recording_keeps_its_clock_profile_and_attach
         (kept,) = reader.iter_attachments()
         assert [channel.topic for _, channel, _ in reader.iter_messages()] == ["/clock", "/camera"]
     assert (kept.create_time, kept.log_time, kept.name, kept.data) == (1, 2, "camera.yaml", b"focal: 525")
+
+
+def test_a_cut_that_selects_nothing_leaves_no_file(tmp_path, capsys):
+    """It was one without messages, which the next attempt was refused for."""
+    source, target = write_tape(tmp_path / "a.mcap"), tmp_path / "b.mcap"
+    assert main(["cut", str(source), "-o", str(target), "--from", "500"]) == 1
+    assert capsys.readouterr().out == f"{source}: 0 messages of 50; no file is written\n"
+    assert main(["cut", str(source), "-o", str(target), "--from", "500", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["output"] is None
+    assert main(["cut", str(source), "-o", str(target), "--from", "9"]) == 0
+    assert target.exists()
 
 
 def test_a_damaged_attachment_is_reported_and_not_copied(tmp_path, capsys):
