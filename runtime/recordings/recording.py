@@ -19,6 +19,7 @@ from tailor.schemas.messages import Message
 from tailor.schemas.typesystem import definition, hash_of_definition, type_hash, type_of
 
 _SENDER = re.compile(r"[0-9a-f]{32}")
+CDR = "cdr"  # encoding of the messages of ROS 2
 LATEST_NS = 2**63 - 1  # of a sender's clock: int64 on the bus
 UNDECLARED = Declaration(0, "", "", None, ())
 
@@ -28,7 +29,7 @@ class Recorded:
     """One message of a recording."""
 
     key: str  # on the bus, e.g. agilo/odom
-    ros_type: str  # empty if unknown
+    ros_type: str  # empty if unknown, or if it is none of ROS 2
     sender: str  # 32 hex digits, empty if unsigned
     sequence: int
     log_ns: int  # wall time of reception
@@ -64,7 +65,10 @@ class Recording:
                 declared.add(record)
                 schema = declared.schemas.get(record.schema_id)
                 name = "" if schema is None else schema.name
-                self._check_schema(record, schema)
+                if record.message_encoding == CDR:
+                    self._check_schema(record, schema)
+                elif type_of(name) is not None:
+                    name = ""  # JSON, for instance, of the same name: nothing that Tailor reads
                 key = record.metadata.get("key") or record.topic.strip("/")
                 sender = record.metadata.get("sender", "")
                 declaration = _declaration(record, schema)
@@ -89,6 +93,9 @@ class Recording:
             return
         recorded, today = channel.metadata.get("type_hash"), type_hash(kind)
         if recorded is None:
+            if schema.encoding != "ros2msg":
+                problem = f"defined in {schema.encoding!r}" if schema.encoding else "not defined"
+                raise UsageError(f"{self.path}: {schema.name} is {problem}, expected its definition in 'ros2msg'")
             text = schema.data.decode(errors="replace")
             if _normalized(text) == _normalized(definition(kind)):
                 return

@@ -210,7 +210,7 @@ def _unpacked(chunk: Any) -> bytes:
     """Uncompressed records of a chunk, limited to its declared size and MAX_CHUNK_BYTES."""
     declared = chunk.uncompressed_size
     if declared > MAX_CHUNK_BYTES:
-        raise ValueError(f"declared size of {declared} bytes")
+        raise ValueError(f"declared size of {declared} bytes, expected at most {MAX_CHUNK_BYTES}")
     if chunk.compression == "zstd":
         plain = zstandard.ZstdDecompressor().stream_reader(BytesIO(chunk.data)).read(declared + 1)
     elif chunk.compression == "lz4":

@@ -11,6 +11,7 @@ from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import LogLine, Odometry
 from tailor.schemas.own import example
 from tailor.schemas.typesystem import MAX_DEFINITION_CHARS, hash_of_definition, ros_type
+from tailor.tools.main import main
 
 LINE = "=" * 80 + "\nMSG: "
 PARTS = {  # sorted, with names relative to their packages
@@ -45,12 +46,12 @@ uint32 nanosec
 """  # as in Humble, whose bags have /rosout
 
 
-def bag(path, kind, text):
+def bag(path, kind, text, defined="ros2msg", encoding="cdr"):
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start(profile="ros2", library="libmcap")
-        schema = writer.register_schema(ros_type(kind), "ros2msg", text.encode())
-        channel = writer.register_channel("/x", "cdr", schema, {"offered_qos_profiles": ""})
+        schema = writer.register_schema(ros_type(kind), defined, text.encode())
+        channel = writer.register_channel("/x", encoding, schema, {"offered_qos_profiles": ""})
         writer.add_message(channel, 5, encode(example(kind)), 5)
         writer.finish()
     return path
@@ -78,3 +79,19 @@ def test_the_hash_of_any_text_is_found_soon(text):
     assert hash_of_definition("nav_msgs/msg/Odometry", text) != hash_of_definition("nav_msgs/msg/Odometry", ODOMETRY)
     assert time.process_time() - began_s < 2.0
     assert len(ODOMETRY) < MAX_DEFINITION_CHARS / 10
+
+
+@pytest.mark.parametrize(("encoding", "defined"), [("json", "jsonschema"), ("protobuf", "protobuf")])
+def test_a_message_of_another_encoding_is_none_of_ours_whatever_its_type_is_called(tmp_path, encoding, defined):
+    """The whole file was refused, as if our type had changed: also by `tailor info` and `tailor cut`."""
+    path = bag(tmp_path / "a.mcap", Odometry, "{}", defined, encoding)
+    (recorded,) = open_recording(path).messages()
+    assert recorded.value() is None
+    assert list(open_recording(path).decoded()) == []
+    assert main(["cut", str(path), "-o", str(tmp_path / "b.mcap"), "--topics", "nav_msgs/msg/Odometry"]) == 0
+
+
+@pytest.mark.parametrize(("defined", "expected"), [("ros2idl", "is defined in 'ros2idl'"), ("", "is not defined")])
+def test_a_definition_that_cannot_be_compared_is_called_so(tmp_path, defined, expected):
+    with pytest.raises(UsageError, match=f"{ros_type(Odometry)} {expected}, expected its definition in 'ros2msg'"):
+        list(open_recording(bag(tmp_path / "a.mcap", Odometry, "module x {};", defined)).messages())
