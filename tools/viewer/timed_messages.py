@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +13,11 @@ from tailor.schemas.errors import Rejected, UsageError
 from tailor.schemas.messages import Message
 from tailor.schemas.packages.spec import RESERVED
 from tailor.schemas.typesystem import ros_type, type_of
+from tailor.tools.cli.plain_text import plain
+from tailor.tools.cli.word_lists import abbreviated
 
 EXECUTIVE = "exec/"
+MAX_NAMED = 4  # executives: a recording of a day may hold dozens
 SHOWN_DIGITS = 8  # of a sender, as `tailor info` shows them
 
 
@@ -72,6 +75,21 @@ def timed(
     _check_sender(path, sender, executives)
     _check_robot(path, robot, owners)
     read(recording.damage)
+
+
+def several_executives(path: Path, first_s: Mapping[str, float], what: str) -> str:
+    """One line about a recording of several executives, e.g. since one was started anew; empty for one of a single one.
+
+    Args:
+      path: The recording.
+      first_s: Sender -> seconds of the first of its messages.
+      what: Noun of what is shown of them.
+    """
+    if len(first_s) < 2:
+        return ""
+    first = sorted(first_s.items(), key=lambda item: item[1])
+    each = abbreviated([f"{sender[:SHOWN_DIGITS]} from {at_s:.1f} s on" for sender, at_s in first], MAX_NAMED)
+    return f"{plain(path.name)} holds {what} of {len(first)} executives: {each}; --sender shows one of them"
 
 
 def _check_sender(path: Path, sender: str, executives: Collection[str]) -> None:

@@ -21,7 +21,7 @@ from tailor.tools.cli.systems.endpoint import configure_bus, refuse_bus_flags
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.live.live_run import LiveRun
 from tailor.tools.viewer.page import page_parts
-from tailor.tools.viewer.recorded_events import DAMAGE, recorded_events
+from tailor.tools.viewer.recorded_events import NOTICE, recorded_events
 from tailor.tools.viewer.side_by_side import side_by_side_parts
 from tailor.tools.viewer.timeline import Event, RunTimeline
 
@@ -116,7 +116,7 @@ def _events(recording: Path, arguments: argparse.Namespace) -> Iterator[Event]:
     timeline, notes = RunTimeline(explainer, arguments.robot), list[str]()
     with console.status(Text(plain(f"reading {recording}"))), _blamed_on(recording):
         for event in recorded_events(recording, timeline, arguments.sender):
-            if event.kind == DAMAGE:
+            if event.kind == NOTICE:
                 notes.append(event.fields["text"])
             yield event
     if timeline.scene_fault:

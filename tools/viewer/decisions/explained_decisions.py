@@ -17,7 +17,7 @@ from tailor.tools.viewer.decisions.explanation_text import certified_gap_pct
 from tailor.tools.viewer.explainer import Explainer
 from tailor.tools.viewer.explanations.explanation import Explanation
 from tailor.tools.viewer.explanations.missing_certificate import why_not_certified
-from tailor.tools.viewer.timed_messages import SHOWN_DIGITS, timed
+from tailor.tools.viewer.timed_messages import SHOWN_DIGITS, several_executives, timed
 
 MAX_NAMED = 3  # actions of a sequence in a title; a word that the arm writes has dozens
 
@@ -68,6 +68,8 @@ def explained_decisions(recording: Path, at_s: float | None = None, sender: str 
         raise UsageError(next(iter(missing.values())))
     for error in missing.values():
         print(plain(error), file=sys.stderr)
+    if several := several_executives(recording, {each.sender: each.at_s for each in reversed(decisions)}, "decisions"):
+        print(several, file=sys.stderr)
     if at_s is not None and (ended := ended_text(reader, decisions[0], at_s)):
         print(plain(f"{recording}: {ended}"), file=sys.stderr)
     return (_explained(explainer, decision, reader.provenance_of(decision)) for decision in decisions)

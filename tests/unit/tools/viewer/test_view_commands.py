@@ -93,6 +93,20 @@ def test_the_readable_part_of_a_damaged_recording_never_passes_for_the_whole(rec
     assert "damaged" not in capsys.readouterr().err + output.read_text().partition('id="data"')[2].partition("<")[0]
 
 
+def test_a_page_of_several_executives_says_so(recording, tmp_path, capsys) -> None:
+    """As of one that was started anew: the page passed for that of a single run."""
+    later = [dataclasses.replace(t, time_ns=t.time_ns + 20 * 10**9) for t in synthetic_run.soccer_run()]
+    both, output = written(tmp_path / "both.mcap", synthetic_run.soccer_run(), later), tmp_path / "both.html"
+    assert run(view, both, "-o", output, "--no-models") == 0
+    told = " ".join(capsys.readouterr().err.split())
+    assert re.search(r"both.mcap holds runs of 2 executives: abababab from 0\.\d s on, cdcdcdcd from 20\.\d s on", told)
+    (text,) = [fields["text"] for _, kind, fields in data_in(output)["rows"] if kind == "damage"]
+    assert text in told
+    for words in (both, "--sender", "cd"), (recording,):
+        assert run(view, *words, "-o", output, "--no-models") == 0
+        assert "executives" not in capsys.readouterr().err
+
+
 def test_pictures_and_scenes_of_a_damaged_recording_say_so(recording, tmp_path, capsys) -> None:
     part = torn(recording, tmp_path)
     assert run(picture, part, "-o", tmp_path / "torn.png") == 0

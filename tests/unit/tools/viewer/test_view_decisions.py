@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import tracemalloc
 from pathlib import Path
 
@@ -165,9 +166,11 @@ def explained_names(path: Path) -> list[str]:
     return [each.decision.subgoals.actions[0].action for each in explained if each.explanation is not None]
 
 
-def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tmp_path: Path) -> None:
+def test_each_of_two_runs_in_a_file_is_explained_by_its_own_domain_and_models(tmp_path: Path, capsys) -> None:
     """The second was judged by the models of the first: nothing seemed to be free in a run of another domain."""
     assert explained_names(two_runs(tmp_path / "two.mcap")) == ["approachBall", "reach", "reach", "reach"]
+    several = r"two.mcap holds decisions of 2 executives: 10{7} from 1\.\d s on, 20{7} from 30\.\d s on; --sender .*\n"
+    assert re.fullmatch(several, capsys.readouterr().err)
 
 
 def test_a_run_without_its_models_is_named_and_the_other_one_explained(tmp_path: Path, monkeypatch, capsys) -> None:
