@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import dataclasses
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from tailor.runtime.clock import Clock
 
+_CODES = {"float": "d", "int": "q"}  # of struct, by the type of a field
 MAX_TEXT = 160  # characters of a fault
 
 
 def fault_text(text: str) -> str:
     """A fault in one line that a driver's state can carry: whatever a device says, it is short, and text on the bus."""
     return " ".join(text.split())[:MAX_TEXT].encode(errors="backslashreplace").decode()
+
+
+def unfit_text(message: Any) -> str:
+    """The fields of a message that hold no number where one belongs; empty: none."""
+    unfit = (each for each in _numbers(message) if not _fits(each[2], each[1]))
+    return "; ".join(f"{name} is {type(value).__name__}, expected {kind}" for name, kind, value in unfit)
+
+
+def _numbers(message: Any) -> Iterator[tuple[str, str, object]]:
+    """Name, type and value of the fields that hold one number."""
+    for field in dataclasses.fields(message):
+        kind = getattr(field.type, "__name__", field.type)
+        if kind in _CODES:
+            yield field.name, kind, getattr(message, field.name)
+
+
+def _fits(value: object, kind: str) -> bool:
+    try:
+        struct.pack(_CODES[kind], value)
+    except Exception:  # whatever a class of a device's library raises as it is converted
+        return isinstance(value, int)  # it is merely too large
+    return True
 
 
 class Calls:

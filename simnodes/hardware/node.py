@@ -18,6 +18,7 @@ from tailor.schemas.topics import TOPICS as TOPIC_TABLE
 from tailor.simnodes.driver import TOPICS, Driver
 from tailor.simnodes.driver_spec import DriverSpec
 from tailor.simnodes.guard import Mode, Reason
+from tailor.simnodes.hardware.calls import unfit_text
 from tailor.simnodes.hardware.device import Device, Phase
 from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.watchdogs import FOREVER, RetryPolicy, SensorWatch, watched_sensors
@@ -126,7 +127,7 @@ class HardwareNode:
         try:
             payload = encode(message if getattr(message, "stamp_ns", 0) else stamped(message, wall))
         except Exception as error:
-            return f"read: {name} cannot be encoded: {type(error).__name__}: {error}"
+            return f"read: {name} cannot be encoded: {unfit_text(message) or f'{type(error).__name__}: {error}'}"
         self._publishers[name].publish_encoded(payload)
         taken = decode(TOPIC_TABLE[name], payload)
         if isinstance(taken, Rejected):  # by every receiver: to them the sensor is silent

@@ -351,14 +351,19 @@ def test_one_measurement_that_is_refused_stops_nobody(robot):
 
 
 @pytest.mark.parametrize(
-    "odometry",
-    [Odometry(0, None, 0.0, 0.0, 0.0, 0.0), Odometry(1.76e18, 0.0, 0.0, 0.0, 0.0, 0.0), Odometry(2**62, *[0.0] * 5)],
+    ("odometry", "what"),
+    [
+        (Odometry(0, None, 0.0, 0.0, "0.1", 0.0), "x is NoneType, expected float; v is str, expected float"),
+        (Odometry(1.76e18, 0.0, 0.0, 0.0, 0.0, 0.0), "stamp_ns is float, expected int"),
+        (Odometry(2**62, *[0.0] * 5), "error: "),
+    ],
 )
-def test_a_measurement_that_cannot_be_encoded_is_a_fault(robot, odometry):
+def test_a_measurement_that_cannot_be_encoded_is_a_fault(robot, odometry, what):
+    """It did not name the field, of perhaps a dozen: `error: required argument is not a float`."""
     driven = robot()
     driven.drive()
     driven.hardware.odometry = {"odom": odometry}
-    stopped_for(driven, "read: odom cannot be encoded")
+    stopped_for(driven, f"read: odom cannot be encoded: {what}")
     driven.hardware.odometry = {}
     driven.drive()
 
