@@ -122,22 +122,32 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
     """
     finished = finished_message(context, state, state.task.finished, running, ("failed", cause))
     failure = (running.action.name, Cause(cause.reason) if cause.reason is Reason.ACTION_TIMEOUT else cause)
-    failures = (*state.task.failures, failure)
-    fault = None
-    if failures.count(failure) >= context.settings.replan_failures or len(failures) >= MAX_FAILURES:
-        fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
-    task = replace(after_action(state.task), failures=failures, plan=None, done=frozenset())
+    again = state.task.failures.count(failure) + 1 >= context.settings.replan_failures
+    state = _with_failure(state, failure, Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}"), again)
+    task = replace(after_action(state.task), plan=None, done=frozenset())
     zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks
-    return replace(state, task=task, deliberation=None, fault=fault, command=zero, coasted=coasted), finished
+    return replace(state, task=task, deliberation=None, command=zero, coasted=coasted), finished
+
+
+def _with_failure(state: State, failure: tuple[str, Cause], fault: Cause, at_once: bool = False) -> State:
+    """Note a failure; it is a fault at once, or if nothing has succeeded for long."""
+    failures = (*state.task.failures, failure)
+    state = replace(state, task=replace(state.task, failures=failures))
+    return replace(state, fault=fault) if at_once or len(failures) >= MAX_FAILURES else state
 
 
 def _abandoned(context: Context, state: State) -> tuple[State, ActionFinished | None]:
-    """Zero command and nothing decided: all decisions were made for the place from which the robot was carried."""
+    """Zero command and nothing decided: all decisions were made for the place from which the robot was carried.
+
+    People may carry it more than once; where its wheels slip at an obstacle, it would be found carried for ever.
+    """
     running, index, zero = state.task.running, state.task.finished, at_rest(context.domain.axes, state.command)
     state = replace(undecided(state), command=zero, coasted=context.settings.coast_ticks)
     if running is None:
         return state, None
-    return state, finished_message(context, state, index, running, ("failed", Cause(Reason.ROBOT_CARRIED)))
+    name, cause = running.action.name, Cause(Reason.ROBOT_CARRIED)
+    state = _with_failure(state, (name, cause), Cause(Reason.REPEATED_FAILURE, f"{name}: {cause}"))
+    return state, finished_message(context, state, index, running, ("failed", cause))
 
 
 def after_action(task: Task) -> Task:

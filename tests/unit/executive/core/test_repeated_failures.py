@@ -57,6 +57,32 @@ def test_failures_that_each_name_another_value_are_a_fault_in_the_end():
     assert run[-1][0].mode is Mode.FAULT
 
 
+class Slipping(LineDomain):
+    """Its odometry reports what was commanded; it is found where it was each time that this has led 0.2 m astray."""
+
+    def update(self, belief, now_ns, samples, command):
+        after = super().update(belief, now_ns, samples, command)
+        if not after.seen:
+            return after
+        astray = abs(belief.x + 0.1 * command[0]) > 0.2
+        return dataclasses.replace(
+            after, x=0.0 if astray else belief.x + 0.1 * command[0], carried=belief.carried + astray
+        )
+
+    def relocations(self, belief):
+        return belief.carried
+
+
+@pytest.mark.promise("P30")
+def test_a_robot_that_slips_at_an_obstacle_is_not_found_carried_for_ever():
+    run = list(drive(of(Slipping()), goal="(visited b)", ticks=200))
+    finished = messages(run, ActionFinished)
+    assert [(f.outcome, f.reason) for f in finished] == [("failed", Reason.ROBOT_CARRIED)] * MAX_FAILURES
+    state = run[-1][0]
+    assert (state.mode, state.command) == (Mode.FAULT, (0.0,))
+    assert state.cause == Cause(Reason.REPEATED_FAILURE, "slide: robot carried")
+
+
 @pytest.mark.parametrize("text", ["x" * 20_000, "\u20ac" * 20_000, "a path \udcff"])
 def test_a_cause_that_no_message_can_hold_is_cut(text):
     """The status of a fault was longer than its topic allows: nobody heard the executive any more."""
