@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from tailor.executive.core.sensing.repeats import Repeat, repeated
 from tailor.executive.core.sensing.travel import Travel, travelled
 from tailor.executive.interfaces.domain import Domain
 from tailor.executive.interfaces.outlet import outlets_of
@@ -33,11 +34,13 @@ class Measurements:
       joints: Names in the first measurement; those of another sender, e.g. of a driver after its restart, are the same.
       faults: Why the newest message is no measurement; keys whose newest message is one are left out.
       travel: Of a base that is commanded by velocities: its way, by poses and by odometry.
+      repeats: Of joint states: how long their positions have been the same.
     """
 
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
     travel: Travel = field(default_factory=Travel)
+    repeats: Mapping[str, Repeat] = field(default_factory=dict)
 
 
 def without_faulty(
@@ -54,19 +57,27 @@ def without_faulty(
       fastest: Speeds that odometry may have; None: any.
       judge: Why the robot's domain takes a message for none; empty: it does not.
     """
-    joints, faults, travel, kept = dict(known.joints), dict(known.faults), known.travel, []
+    joints, faults, repeats, travel, kept = (
+        dict(known.joints),
+        dict(known.faults),
+        dict(known.repeats),
+        known.travel,
+        [],
+    )
     for sample in samples:
         faults.pop(sample.key, None)
         fault = _fault(sample.message, joints.get(sample.key, ()), fastest) or judge(sample.message)
         if not fault and fastest is not None:
             travel, fault = travelled(travel, sample.arrival_ns, sample.message)
+        if not fault and isinstance(sample.message, JointState):
+            repeats[sample.key], fault = repeated(repeats.get(sample.key), sample.arrival_ns, sample.message)
         if fault:
             faults[sample.key] = fault
             continue
         if isinstance(sample.message, JointState):
             joints.setdefault(sample.key, sample.message.names)
         kept.append(sample)
-    return Measurements(joints, faults, travel), tuple(kept)
+    return Measurements(joints, faults, travel, repeats), tuple(kept)
 
 
 def fastest_of(domain: Domain) -> Speeds | None:

@@ -19,7 +19,7 @@ from tests.support.toy_domain import LineDomain, driver, line_context, odometry
 from tests.unit.executive.core.test_core import TICK, drive
 
 KEY = "agilo/joint_states"
-WHOLE = JointState(0, ("pan", "lift"), (0.1, 0.2), (0.0, 0.3), (1.0, 2.0))
+WHOLE = JointState(0, ("pan", "lift"), (0.1, 0.2), (0.0, 0.03), (1.0, 2.0))
 FAULTY = [
     (JointState(0, ("pan",), (0.1,), (0.0,), (1.0,)), "lacks lift"),
     (JointState(0, ("lift", "hand"), (0.1, 0.2), (0.0, 0.3), (1.0, 2.0)), "lacks pan"),
@@ -75,7 +75,7 @@ def known():
 def test_a_joint_state_that_no_belief_can_read_is_no_measurement_and_says_why(state, fault):
     odom = odometry(0, 0.0, 1)
     assert without_faulty(known(), (odom, reading(state))) == (
-        Measurements({KEY: ("pan", "lift")}, {KEY: fault}),
+        dataclasses.replace(known(), joints={KEY: ("pan", "lift")}, faults={KEY: fault}),
         (odom,),
     )
 
@@ -83,7 +83,8 @@ def test_a_joint_state_that_no_belief_can_read_is_no_measurement_and_says_why(st
 @pytest.mark.parametrize("state", LEGAL)
 def test_joints_in_another_order_or_beside_others_are_read(state):
     after_fault, _ = without_faulty(known(), (reading(FAULTY[0][0]),))
-    assert without_faulty(after_fault, (reading(state),)) == (known(), (reading(state),))
+    after, samples = without_faulty(after_fault, (reading(state),))
+    assert (after.joints, after.faults, samples) == (known().joints, known().faults, (reading(state),))
 
 
 def test_a_driver_that_lost_a_joint_while_it_was_restarted_is_not_believed():
@@ -122,6 +123,40 @@ def test_an_arm_whose_joint_states_lose_a_joint_stands_until_they_are_whole(stat
     assert all(s.command == (0.0,) for s in states[10:20])
     assert all(state.command != (0.0,) for state in states[5:10])
     assert states[-1].task.result == "achieved"
+
+
+def joints_at(n, frozen, velocity=0.5):
+    """Joint states of a lift that moves in each tick, and from the tick `frozen` on are repeated with new stamps."""
+    at = min(n, frozen)
+    return reading(JointState(n * TICK, ("pan", "lift"), (0.1, 0.01 * at), (0.0, velocity), ()), n * TICK, 5 * n)
+
+
+@pytest.mark.promise("P6")
+def test_an_arm_whose_encoders_are_frozen_in_motion_stands_until_they_are_not():
+    def world(n, given, x):
+        joints = joints_at(n, 8 if n <= 30 else 100)
+        return dataclasses.replace(given, samples=(odometry(n * TICK, x, n), joints, driver(n * TICK)))
+
+    context = dataclasses.replace(line_context(), domain=Arm())
+    states = [state for state, _, _ in drive(context, world=world, ticks=70)]
+    fault = Cause(Reason.INPUT_STALE, "joint_states repeats itself while its joints move at 0.5")
+    assert states[9].mode is Mode.EXECUTING
+    assert {(s.mode, s.cause, s.command) for s in states[16:30]} == {(Mode.HOLDING, fault, (0.0,))}
+    assert states[-1].task.result == "achieved"
+
+
+@pytest.mark.parametrize(("frozen", "velocity"), [(0, 0.1), (0, 0.0), (100, 0.5)])
+def test_joints_at_rest_may_repeat_themselves_for_ever_and_moving_ones_keep_their_velocities(frozen, velocity):
+    known = Measurements()
+    for n in range(100):
+        sample = joints_at(n, frozen, velocity)
+        known, kept = without_faulty(known, (sample,))
+        assert (kept, known.faults) == ((sample,), {})
+
+
+def test_a_silence_is_no_motion_of_joints():
+    first, later = joints_at(1, 0), dataclasses.replace(joints_at(1, 0), arrival_ns=90 * TICK)
+    assert without_faulty(without_faulty(Measurements(), (first,))[0], (later,))[0].faults == {}
 
 
 @pytest.mark.promise("P6")
