@@ -1,4 +1,7 @@
-"""A goal without conditions drops the open one: armed or not, the robot stands until another goal is set."""
+"""A goal without conditions drops the open one: armed or not, the robot stands until another goal is set.
+
+That goal begins with the facts which the one before has left, not with those of the scenario.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,11 @@ import pytest
 
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs
-from tailor.schemas.messages import ArmRequest, ExecStatus
-from tests.support.toy_domain import driver, line_context, odometry
+from tailor.executive.deliberation.context import Settings, make_context
+from tailor.executive.interfaces.domain import Scenario
+from tailor.executive.interfaces.models import Models
+from tailor.schemas.messages import ActionFinished, ArmRequest, ExecStatus
+from tests.support.toy_domain import SENDER, LineDomain, LineModel, driver, line_context, odometry
 from tests.unit.executive.core.test_core import GOAL, TICK, drive, messages
 
 
@@ -61,3 +67,33 @@ def test_it_ends_a_fault(goal):
     )
     assert run[18][0].mode is Mode.FAULT
     assert run[-1][0].mode is (Mode.READY if goal else Mode.FAULT)
+
+
+DONE = "(not (dirty a))"
+PLACES = {"home": {"x": 0.0}, "a": {"x": 0.5}}
+PROBLEM = f"(define (problem room) (:domain mop) (:objects home a) (:init (dirty a)) (:goal {DONE}))"
+
+
+class Mop(LineDomain):
+    """The toy robot, which mops: once it has done so, no fact holds."""
+
+    pddl = """
+    (define (domain mop)
+      (:predicates (dirty ?p))
+      (:action slide :parameters (?from ?to) :precondition (dirty ?to) :effect (not (dirty ?to))))
+    """
+
+
+def test_a_goal_that_the_last_one_has_brought_about_is_achieved_though_no_fact_holds():
+    scenario, models = Scenario("room", PROBLEM, PLACES), Models({"slide/duration": LineModel()}, {})
+    context = make_context(Mop(), scenario, models, Settings(), SENDER)
+    again = 60
+
+    def world(n, given, _):
+        return dataclasses.replace(given, goal=DONE if n in (1, again) else "")
+
+    run = list(drive(context, world=world, ticks=again + 5))
+    states = [state for state, _, _ in run]
+    assert (states[again - 2].task.result, states[again - 2].task.facts) == ("achieved", frozenset())
+    assert len(messages(run, ActionFinished)) == 1
+    assert states[-1].task.result == "achieved"
