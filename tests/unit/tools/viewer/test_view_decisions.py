@@ -133,9 +133,12 @@ def test_memory_follows_the_decisions_that_are_shown() -> None:
 
 
 def test_a_time_after_the_run_is_named_beside_its_last_decision(capsys) -> None:
-    (decision,) = explained_decisions(ROOT / "tests" / "data" / "golden" / "soccer-approach-dribble.mcap", 400.0)
+    path = ROOT / "tests" / "data" / "golden" / "soccer-approach-dribble.mcap"
+    first_ns, *_, last_ns = (each.log_ns for each in open_recording(path).messages())
+    (decision,) = explained_decisions(path, 400.0)
     assert decision.explanation is None
-    assert ".mcap: the recording ends at 12.2 s; this is its last decision" in capsys.readouterr().err
+    ends_s = (last_ns - first_ns) / 1e9
+    assert f".mcap: the recording ends at {ends_s:.1f} s; this is its last decision" in capsys.readouterr().err
 
 
 def test_a_time_after_the_action_of_a_decision_has_none_in_force() -> None:
