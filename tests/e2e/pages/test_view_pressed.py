@@ -190,6 +190,22 @@ def test_a_narrowed_timeline_moves_along_with_the_shown_moment(browser: Browser,
     assert moved[-1] > narrow[-1]
 
 
+def test_a_timeline_narrowed_to_another_time_stays_there_while_the_moment_moves(
+    browser: Browser, tmp_path, rows
+) -> None:
+    """As on a live page that follows the newest moment while people look at an earlier one."""
+    show(browser, tmp_path / "run.html", page("arm", rows))
+    browser.press("End")
+    wheel = "new WheelEvent('wheel', {deltaY: -100, shiftKey: true, clientX: 200, bubbles: true, cancelable: true})"
+    for _ in range(8):
+        browser.value(f"document.querySelector('#timeline svg').dispatchEvent({wheel})")
+        browser.frame()
+    narrow = browser.value(LABELS)
+    assert narrow[-1] < browser.value("Number(document.documentElement.dataset.at)")
+    browser.press("ArrowLeft")
+    assert browser.value(LABELS) == narrow
+
+
 def test_two_fingers_stretch_the_timeline_and_move_no_time(browser: Browser, tmp_path, rows) -> None:
     show(browser, tmp_path / "run.html", page("arm", rows))
     box = "document.querySelector('#timeline svg .hit').getBoundingClientRect()"

@@ -8,7 +8,7 @@ class Stretch {
     this.run = run;
     this.player = player;
     this.narrowed = null; // [from, to], or all
-    this.at = null; // the moment that was last shown
+    this.at = -Infinity; // the moment that was last shown
     this.fingers = new Map(); // those that are down: x by id
     document.addEventListener("keydown", (event) => this.key(event));
   }
@@ -23,7 +23,8 @@ class Stretch {
   /** Move a narrowed stretch along where the shown moment leaves it; one that was narrowed elsewhere stays. */
   follow(at) {
     const [from, to] = this.view();
-    if (this.narrowed && at !== this.at && (at < from || at > to)) {
+    const inside = (moment) => from <= moment && moment <= to;
+    if (this.narrowed && inside(this.at) && !inside(at)) {
       const start = Math.min(this.run.end - (to - from), Math.max(this.run.start, at - 0.1 * (to - from)));
       this.narrowed = [start, start + to - from];
     }
