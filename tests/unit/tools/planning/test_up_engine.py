@@ -178,13 +178,14 @@ def test_an_engine_that_is_not_built_in_is_refused():
 @pytest.mark.parametrize(
     ("params", "complaint"),
     [
-        ({"node_limits": 50}, "found 'node_limits'"),
-        ({"node_limit": "many"}, "another type"),
-        ({"flaw_orders": 3}, "expected flaw_orders to be a list, found 3"),
-        ({"flaw_orders": [3]}, "another type"),
+        ({"node_limits": 50}, "unknown key 'node_limits'"),
+        ({"node_limit": "many"}, "'node_limit' is 'many', expected int"),
+        ({"flaw_orders": 3}, "'flaw_orders' is 3, expected a list"),
+        ({"flaw_orders": [3]}, "'flaw_orders' is 3, expected a table"),
         ({"rankings": ["SHORTEST"]}, "SHORTEST"),
         ({"memory_mb": "512"}, "memory_mb"),
         ({"weight": -1.0}, "expected a weight"),
+        ({"ground": "no"}, "'ground' is 'no', expected bool"),
     ],
 )
 def test_parameters_are_checked_when_the_engine_is_made(params, complaint):
