@@ -34,7 +34,7 @@ class Measurements:
       joints: Names in the first measurement; those of another sender, e.g. of a driver after its restart, are the same.
       faults: Why the newest message is no measurement; keys whose newest message is one are left out.
       travel: Of a base that is commanded by velocities: its way, by poses and by odometry.
-      repeats: Of joint states: how long their positions have been the same.
+      repeats: Of joint states: the newest of each key, and how far it would have moved since it repeats itself.
     """
 
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
