@@ -6,12 +6,11 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
-from tailor.executive.core.effects import confirmed, with_effects
+from tailor.executive.core.effects import begun, confirmed, facts_now, with_effects
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
 from tailor.executive.deliberation.context import Context
-from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.outlet import at_rest
 from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.executive.interfaces.values import Fact
@@ -87,13 +86,11 @@ def _started(context: Context, state: State) -> State:
     if decision is None:
         return state
     step = decision.sequence.actions[0].step
-    facts = anchored(context.domain, state.belief, context.scenario, state.task.facts)
-    missing = _missing_support(decision.plan, step, facts)
+    missing = _missing_support(decision.plan, step, facts_now(context, state))
     if missing is not None:
         return replace(state, task=replace(state.task, decision=None), deliberation=None)
-    return replace(
-        state, task=replace(state.task, running=first_action(decision, context.models, state.now_ns)), coasted=0
-    )
+    running = first_action(decision, context.models, state.now_ns)
+    return replace(state, task=begun(context, state.task, decision.plan, running), coasted=0)
 
 
 def _missing_support(plan: planning.Plan, step: int, facts: frozenset[Fact]) -> planning.Literal | None:

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import after_action
+from tailor.executive.core.effects import begun, facts_now
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
 from tailor.executive.core.state import Halt, State, Task
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Decision
-from tailor.executive.interfaces.domain_results import anchored
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.course_check import risen_failure
@@ -70,7 +70,7 @@ def _lost_support(context: Context, state: State, running: Running) -> planning.
     action = task.plan.action_of(running.step) if task.plan is not None else None
     if task.plan is None or action is None:
         return None
-    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
+    facts = facts_now(context, state)
     in_flux = {effect.atom.predicate for effect in context.pddl_domain.bound(action)[0].effects}
     for link in task.plan.links:
         literal, taken = link.literal, link.producer == 0 and link.literal.fact[0] not in in_flux
@@ -124,7 +124,7 @@ def redirected(context: Context, task: Task, running: Running, now_ns: int) -> T
     assert task.decision is not None
     following = first_action(task.decision, context.models, now_ns)
     if starts_another(task.decision, running):
-        return replace(task, running=following, finished=task.finished + 1)
+        return begun(context, replace(task, finished=task.finished + 1), task.decision.plan, following)
     return replace(task, running=running.redirected(following, task.decision.made_ns))
 
 

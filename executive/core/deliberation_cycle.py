@@ -15,6 +15,7 @@ from tailor.executive.core.course import (
     risk_of_course,
     shortened,
 )
+from tailor.executive.core.effects import facts_for_certain, facts_now
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.spare_budget import with_budget_used, with_next_choice
 from tailor.executive.core.state import Inputs, State
@@ -60,11 +61,7 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     if deliberation.stage == "failed":
         return failed(context, state, deliberation.failure)
     if deliberation.nothing_to_do():
-        if not _holds_still(context, state, deliberation):
-            return replace(state, deliberation=None)
-        finished = state.task.finished + (state.task.running is not None)
-        task = replace(state.task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
-        return replace(state, task=task)
+        return _without_steps(context, state, deliberation)
     decision = deliberation.decision()
     if decision is not None:
         state = adopted(context, state, decision, deliberation.stage == "decided")
@@ -74,10 +71,18 @@ def advance_deliberation(context: Context, state: State, budget: Budget) -> Stat
     return state
 
 
-def _holds_still(context: Context, state: State, deliberation: Deliberation) -> bool:
-    """Whether the facts of now give what a plan without steps takes from those of its start, perhaps seconds ago."""
-    plan, facts = deliberation.plan, anchored(context.domain, state.belief, context.scenario, state.task.facts)
-    return plan is None or all(link.literal.holds_in(facts) for link in plan.links)
+def _without_steps(context: Context, state: State, deliberation: Deliberation) -> State:
+    """The state after a plan without steps: achieved, if the facts of now give what it takes from those of its start.
+
+    That was perhaps seconds ago, and the robot may have left since what is only remembered.
+    """
+    links, task = deliberation.plan.links if deliberation.plan is not None else (), state.task
+    if all(link.literal.holds_in(facts_for_certain(context, state)) for link in links):
+        finished = task.finished + (task.running is not None)
+        task = replace(task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
+        return replace(state, task=task)
+    without_left = all(link.literal.holds_in(facts_now(context, state)) for link in links)
+    return replace(state, task=replace(task, without_left=without_left), deliberation=None)
 
 
 def _with_deliberation(context: Context, state: State) -> State:
@@ -94,15 +99,15 @@ def _with_deliberation(context: Context, state: State) -> State:
             return state
     elif not idle or ongoing is not None:
         return state
-    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
-    if idle and _stays_failed(state, facts):
+    facts, remembered = facts_now(context, state), anchored(context.domain, state.belief, context.scenario, task.facts)
+    if idle and _stays_failed(state, remembered):
         return state
     number = state.deliberations + 1
     source = _source(context, state, current_problem(context, facts, task.goal), number)
     known = state.next_choice if idle else None
     start = known.values() if known is not None and known.decision.plan is task.plan else {}
     deliberation = Deliberation(context, state.belief, state.now_ns, number, source, start)
-    return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=facts))
+    return replace(state, deliberation=deliberation, deliberations=number, task=replace(task, facts=remembered))
 
 
 def _stays_failed(state: State, facts: frozenset[Fact]) -> bool:

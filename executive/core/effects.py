@@ -1,4 +1,4 @@
-"""What the plan expects of an action that has been done, and whether it is observed."""
+"""What the plan expects of an action: what it takes away as it begins, what it brings about, what of it is observed."""
 
 from __future__ import annotations
 
@@ -16,13 +16,43 @@ MAX_SUBGOALS = 30  # reached in a row before one action: each may lead on around
 MAX_UNCONFIRMED = 10  # times that an action is done without effect; a ball may be kicked away a few times in a row
 
 
+def begun(context: Context, task: Task, plan: planning.Plan, running: Running) -> Task:
+    """The task with an action that begins: from now on it is not where the facts that it takes away have it.
+
+    They stay remembered, as what comes after may need them: a stroke goes on from the waypoint that the arm has left.
+    """
+    action = plan.action_of(running.step)
+    taken = frozenset[Fact]() if action is None else task.facts - _applied(context, task.facts, action)
+    return replace(task, running=running, left=task.left | taken)
+
+
 def with_effects(context: Context, task: Task, running: Running) -> Task:
     """The abstract state after a plan step is done; an asserted subgoal does not change it."""
     action = planned_action(task.plan, running)
     if action is None:
         return task
-    facts = planning.apply_action(context.pddl_domain, context.problem, task.facts, action)
-    return replace(task, facts=facts, done=task.done | {running.step})
+    facts = _applied(context, task.facts, action)
+    left = (task.left & facts) - _applied(context, task.facts - task.left, action)
+    return replace(task, facts=facts, left=left, without_left=False, done=task.done | {running.step})
+
+
+def facts_now(context: Context, state: State) -> frozenset[Fact]:
+    """The abstract state to plan from and to execute plans in: what is observed, and what else is remembered."""
+    task = state.task
+    return _anchored(context, state, task.facts - task.left if task.without_left else task.facts)
+
+
+def facts_for_certain(context: Context, state: State) -> frozenset[Fact]:
+    """The abstract state by which a goal is achieved: an action that has begun takes away what it will."""
+    return _anchored(context, state, state.task.facts - state.task.left)
+
+
+def _anchored(context: Context, state: State, remembered: frozenset[Fact]) -> frozenset[Fact]:
+    return anchored(context.domain, state.belief, context.scenario, remembered)
+
+
+def _applied(context: Context, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
+    return planning.apply_action(context.pddl_domain, context.problem, facts, action)
 
 
 def confirmed(context: Context, state: State, running: Running) -> State:
@@ -37,7 +67,7 @@ def confirmed(context: Context, state: State, running: Running) -> State:
     if action is None:
         return state
     task = replace(task, approached=tuple(each for each in task.approached if each != action))
-    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
+    facts = facts_now(context, replace(state, task=task))
     missing = missing_effects(context, facts, action)
     if not missing:
         others = tuple(each for each in task.unconfirmed if each != action)
@@ -71,4 +101,4 @@ def planned_action(plan: planning.Plan | None, running: Running) -> Fact | None:
 
 def missing_effects(context: Context, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
     """Facts that a ground action brings about and that do not hold."""
-    return planning.apply_action(context.pddl_domain, context.problem, facts, action) - facts
+    return _applied(context, facts, action) - facts

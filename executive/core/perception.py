@@ -131,7 +131,7 @@ def _with_goal(context: Context, state: State, goal: str) -> State:
     if drops_goal(context, goal):
         return _without_goal(state)
     facts = state.task.facts if state.task.goal else frozenset(context.problem.initial)  # nothing may hold after a goal
-    task = Task(goal=goal, active=True, facts=facts)
+    task = Task(goal=goal, active=True, facts=facts, left=state.task.left)
     return replace(state, task=task, deliberation=None, fault=None, mode=Mode.READY)
 
 

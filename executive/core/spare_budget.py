@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tailor.executive import planning
+from tailor.executive.core.effects import facts_now
 from tailor.executive.core.state import State
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.deliberation import Deliberation
 from tailor.executive.deliberation.next_choice import NextChoice
 from tailor.executive.deliberation.plan_reuse import Preparation
 from tailor.executive.interfaces.budget import Budget
-from tailor.executive.interfaces.domain_results import anchored
 
 
 def with_next_choice(context: Context, state: State, deliberation: Deliberation) -> State:
@@ -51,7 +51,7 @@ def _preparation(context: Context, state: State) -> Preparation | None:
     action = task.plan.action_of(running.step)
     if action is None:
         return None
-    facts = anchored(context.domain, state.belief, context.scenario, task.facts)
+    facts = facts_now(context, state)
     preparation = state.preparation
     if preparation is None or not preparation.follows(task.plan, running.step, facts):
         expected = planning.apply_action(context.pddl_domain, context.problem, facts, action)

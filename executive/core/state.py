@@ -63,6 +63,8 @@ class Task:
     result: Result = Result.OPEN
     result_cause: Cause | None = None  # of a failed task
     facts: frozenset[Fact] = frozenset()  # the remembered abstract state
+    left: frozenset[Fact] = frozenset()  # of these, what actions that began and were not done take away
+    without_left: bool = False  # whether the goal is planned for without them: it holds by them alone
     plan: Plan | None = None
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
