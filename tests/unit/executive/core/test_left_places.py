@@ -6,7 +6,7 @@ import pytest
 
 from tailor.executive.interfaces.reasons import Reason
 from tests.support.toy_domain import line_context
-from tests.unit.executive.core.goals.test_cancelled_goal import with_goals
+from tests.unit.executive.core.test_cancelled_goal import with_goals
 from tests.unit.executive.core.test_core import drive
 
 WAY_TO_A, WAY_TO_B = 6, 25  # ticks in which it slides there; a lies at 0.5 m, b at 1 m
