@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from tailor.executive.deliberation.context import Settings, make_context
+from tailor.executive.interfaces.domain import Scenario
+from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Reason
-from tests.support.toy_domain import line_context
+from tests.support.toy_domain import PDDL, PROBLEM, SENDER, LineDomain, LineModel, line_context
 from tests.unit.executive.core.test_cancelled_goal import with_goals
 from tests.unit.executive.core.test_core import drive
 
@@ -52,4 +55,23 @@ def test_what_happened_stays_so_on_the_way():
 def test_a_robot_that_came_back_is_there():
     run = run_with({1: "(at a)", 30: "(at b)", 70: "(at a)"}, ticks=120)
     assert [run[tick][0].task.result for tick in (28, 68, -1)] == ["achieved"] * 3
+    assert run[-1][2] == pytest.approx(0.5, abs=0.06)
+
+
+class Rover(LineDomain):
+    """The toy robot, whose way to a place may begin anywhere."""
+
+    pddl = PDDL.replace("(at ?from) (place ?to)", "(place ?from) (place ?to)")
+
+
+@pytest.mark.parametrize("tick", [WAY_TO_B, WAY_TO_B + 3])
+def test_a_robot_that_can_turns_back_to_the_place_that_it_has_left(tick):
+    scenario, models = Scenario("two-places", PROBLEM, PLACES), Models({"slide/duration": LineModel()}, {})
+    context = make_context(Rover(), scenario, models, Settings(), SENDER)
+    run = list(
+        drive(context, world=with_goals({1: "(at a)", 18: "(and (at b) (not (at a)))", tick: "(at a)"}), ticks=80)
+    )
+    assert run[tick - 2][2] > 0.6
+    assert run[tick + 2][0].command[0] < -0.1
+    assert run[-1][0].task.result == "achieved"
     assert run[-1][2] == pytest.approx(0.5, abs=0.06)
