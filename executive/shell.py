@@ -128,7 +128,7 @@ class Shell:
         """The goal that this tick's request sets, else `first`; an invalid goal is refused with its cause.
 
         So is one that may have waited while this process or the bus stood still: people were told that nobody responds.
-        One that only drops the open goal moves nothing, so it counts.
+        One that only drops the open goal moves nothing, so it counts; the open goal, sent again, changes nothing.
         """
         request = self._goals.poll()
         late = self._late_goals(period, received, request)
@@ -144,11 +144,19 @@ class Shell:
                 request.refuse(late)
                 return first
             request.accept()
-            return goal
+            return first if self._pursues(goal) else goal
         task = self._state.task
         dropped = first or (task.goal if task.active else "")
         request.accept(f"cancelled: {dropped}" if dropped else "no goal is open")
         return goal if dropped else ""
+
+    def _pursues(self, goal: str) -> bool:
+        """Whether a goal is the open one: sent again, as some ROS nodes do all the time, it must not begin anew.
+
+        A goal that has ended, or that ends in a fault, does.
+        """
+        state = self._state
+        return state.task.active and state.fault is None and state.task.goal == goal
 
     def _late_goals(self, period: Period, received: tuple[Sample, ...], request: ServiceRequest | None) -> str:
         """Why this request is too old; called in every tick, after the look at goals.
