@@ -13,6 +13,7 @@ from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.inbox import Raw
 from tailor.runtime.bus.ingest_queue import IngestQueue
 from tailor.schemas.codec import encode
+from tailor.schemas.errors import UnreachableError
 from tailor.schemas.messages import DriverState, EStop
 from tailor.tools.commands.run import estop
 from tailor.tools.main import main
@@ -142,6 +143,33 @@ def test_an_estop_reports_before_its_session_closes(monkeypatch, capsys):
     monkeypatch.setattr(estop, "open_bus", closing)
     assert main(["estop"]) == 0
     assert read == ["agilo is estopped\n"]
+
+
+def test_who_presses_while_no_bus_answers_is_told_at_once_to_use_another_stop(monkeypatch, capsys):
+    """For 3 s nothing was printed, and then that a bus is to be started."""
+    read = []
+
+    @contextmanager
+    def unreachable(*_):
+        end_s = time.monotonic() + 5.0
+        while not read and time.monotonic() < end_s:
+            read.extend(capsys.readouterr().err.splitlines())
+            time.sleep(0.01)
+        raise UnreachableError("bus endpoint tcp/x: no router responds")
+        yield
+
+    monkeypatch.setattr(estop, "open_bus", unreachable)
+    assert main(["estop"]) == 2
+    assert read == ["NOT STOPPED: use the e-stop of the robot itself; no bus answers so far"]
+    error = "tailor estop: NOT STOPPED: use the e-stop of the robot itself; bus endpoint tcp/x: no router responds\n"
+    assert capsys.readouterr().err == error
+
+
+def test_where_a_bus_answers_in_time_nobody_reads_that_nothing_was_stopped(monkeypatch, capsys):
+    monkeypatch.setattr(estop, "PATIENCE_S", 0.2)
+    monkeypatch.setattr(estop, "open_bus", lambda *_: nullcontext(Bus(agilo=confirms(40))))
+    assert main(["estop"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_newer_state_counts_and_junk_does_not():

@@ -10,13 +10,19 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from threading import Timer
 
+from tailor.runtime.bus.session import Session
+from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import DriverState
 from tailor.tools.cli.systems.endpoint import configure_bus, key_advice, open_bus
 from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 LOST = "NOT CONFIRMED: the bus was lost, and nobody knows what heard the e-stop; use the e-stop of the robot itself"
+NOT_STOPPED = "NOT STOPPED: use the e-stop of the robot itself"
+PATIENCE_S = 0.7  # for a bus; then people are told. A bus that starts just now is tried for longer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """0 if every driver that is heard or expected has stopped, 1 if one has not or there is none."""
-    with open_bus(arguments, "people") as session:
+    with _bus(arguments) as session:
         button = StopButton(session)
         try:
             if arguments.hold:
@@ -45,6 +51,23 @@ def run(arguments: argparse.Namespace) -> int:
         finally:  # whatever ended it
             states = button.press(expected=arguments.expect)
         return _report(arguments, states, session.connected)  # a session whose router hangs takes seconds to close
+
+
+@contextmanager
+def _bus(arguments: argparse.Namespace) -> Iterator[Session]:
+    """The session; who waits for it is told what to do meanwhile, and what to do instead if there is none."""
+    late = f"{NOT_STOPPED}; no bus answers so far"
+    told = Timer(PATIENCE_S, lambda: print(late, file=sys.stderr, flush=True))
+    told.daemon = True
+    with ExitStack() as stack:
+        told.start()
+        try:
+            session = stack.enter_context(open_bus(arguments, "people"))
+        except UsageError as error:
+            raise type(error)(f"{NOT_STOPPED}; {error}") from error
+        finally:
+            told.cancel()
+        yield session
 
 
 def _report(arguments: argparse.Namespace, states: Mapping[str, DriverState], connected: bool) -> int:
