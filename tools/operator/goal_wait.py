@@ -8,6 +8,7 @@ from tailor.schemas.reason_text import reason_text
 from tailor.schemas.ros2.action_messages import GoalResult
 
 SILENT_S = 2.0  # without a status; an executive that stood still for longer refuses goals, too
+OTHER_S = 1.0  # of the executive heard before the goal: one that ended just then has left the goal to another one
 
 
 class GoalWait:
@@ -22,7 +23,7 @@ class GoalWait:
         """`goal`: as it is sent; empty: that of the scenario."""
         self.result: GoalResult | None = None
         self.line = ""
-        self._followed = FollowedGoal(goal)
+        self._goal, self._followed = goal.strip(), FollowedGoal(goal)
         self._before: tuple[str, int] | None = None  # sender and tick of the newest status before the acceptance
         self._accepted = False
         self._heard_s = 0.0
@@ -39,13 +40,20 @@ class GoalWait:
         if not self._accepted:
             self._before = sample.sender, status.tick
             return
-        if self._before is not None and (sample.sender != self._before[0] or status.tick <= self._before[1]):
-            return
+        if self._before is not None:
+            same = sample.sender == self._before[0]
+            if not (status.tick > self._before[1] if same else self._took_over(status, now_s)):
+                return
         self._before = sample.sender, status.tick
         self._heard_s = now_s
         doing = f"{status.mode} {status.action}".strip()
         self.line = f"{doing}: {reason_text(status.reason, status.detail)}" if status.reason else doing
         self.result = self._followed.hear(status)
+
+    def _took_over(self, status: ExecStatus, now_s: float) -> bool:
+        """Whether an executive pursues the goal that the one heard before has not been heard of since."""
+        pursued = not status.result and status.goal == (self._goal or status.goal) != ""
+        return pursued and not self.line and now_s - self._heard_s > OTHER_S
 
     def lost(self, now_s: float) -> bool:
         """Whether the executive is silent: it is not known what becomes of the goal. One that starts again has none."""

@@ -76,6 +76,25 @@ def test_an_executive_that_is_silent_or_was_started_again_is_lost(wait):
     assert wait.lost(101.1 + SILENT_S)
 
 
+@pytest.mark.parametrize("goal", ["(visited a)", ""])
+def test_another_executive_is_followed_that_pursues_the_goal_as_the_known_one_has_ended(goal):
+    """It was told to be silent, where one ended between its last status and the goal, and the next one answered."""
+    wait = GoalWait(goal)
+    wait.hear(sample(tick=6, goal="(visited b)"), 99.9)
+    wait.accept(100.0)
+    wait.hear(sample(OTHER, tick=1), 100.1)
+    assert wait.line == "", "the known one may come later"
+    for other in ({"goal": ""}, {"goal": "(visited a)", "result": "achieved"}):
+        wait.hear(sample(OTHER, tick=2, **other), 101.1)
+        assert (wait.result, wait.line) == (None, "")
+    wait.hear(sample(OTHER, tick=3), 101.2)
+    assert wait.line == "EXECUTING slide"
+    wait.hear(sample(tick=7, result="achieved"), 101.3)
+    assert wait.result is None
+    wait.hear(sample(OTHER, tick=4, result="achieved"), 101.4)
+    assert wait.result.result == "achieved"
+
+
 def test_nobody_is_lost_before_the_acceptance_or_after_the_end(wait):
     assert not GoalWait().lost(1000.0)
     wait.hear(sample(result="achieved"), 100.1)
