@@ -28,6 +28,7 @@ from tailor.schemas.topics import reports
 DELIBERATION_NS = 60_000_000  # of a tick's 100 ms
 TICK_END_NS = 80_000_000  # the whole tick is done by then, however late it began
 PROVENANCE_TICKS = 10  # once a second, also for a recorder that starts late
+ENDS = "the executive ends"
 
 
 class Shell:
@@ -114,7 +115,7 @@ class Shell:
     def _tick(self, period: Period, goal: str, stopping: bool) -> None:
         received = self._inbox.drain(period.now_ns)
         samples = (*received, *self._planner_answer(period))
-        inputs = Inputs(samples, self._goal(goal, period, received), period.skipped, stopping)
+        inputs = Inputs(samples, self._goal(goal, period, received, stopping), period.skipped, stopping)
         self._state, outputs = control(self._context, self._state, period.now_ns, inputs)
         self._publish(outputs)
         control_ns = self._clock.now_ns() - period.now_ns
@@ -124,14 +125,15 @@ class Shell:
         self._publish(outputs)
         self._report(period, inputs, control_ns, budget.granted)
 
-    def _goal(self, first: str, period: Period, received: tuple[Sample, ...]) -> str:
+    def _goal(self, first: str, period: Period, received: tuple[Sample, ...], stopping: bool) -> str:
         """The goal that this tick's request sets, else `first`; an invalid goal is refused with its cause.
 
         So is one that may have waited while this process or the bus stood still: people were told that nobody responds.
+        So is one that comes as the executive ends.
         One that only drops the open goal moves nothing, so it counts; the open goal, sent again, changes nothing.
         """
         request = self._goals.poll()
-        late = self._late_goals(period, received, request)
+        late = ENDS if stopping else self._late_goals(period, received, request)
         if request is None:
             return first
         goal = request.text.strip() or self._context.problem.goal_text

@@ -165,6 +165,23 @@ def test_dropping_the_goal_counts_also_after_a_pause():
     assert answer_after(12.0, "(and)")[0] == (True, "no goal is open")
 
 
+@pytest.mark.parametrize(
+    ("goal", "answer"), [("(visited a)", (False, "the executive ends")), ("(and)", (True, "no goal is open"))]
+)
+def test_a_goal_that_comes_as_the_executive_ends_is_refused(goal, answer):
+    """It was accepted, and nobody pursued it."""
+    clock = Clock()
+    session = Goals(clock, {})
+
+    def until(state):
+        if state.tick == 5:
+            session.requests[clock.ns] = goal
+        return state.tick == 5
+
+    Shell(line_context(), session, clock, {}).run("", until)
+    assert session.answers == [answer]
+
+
 class RosSession(ClientSession, Session):
     """The same bus with a client of ROS 2's action."""
 
