@@ -109,19 +109,19 @@ def run(arguments: argparse.Namespace) -> int:
                 _warn(f"on a secured bus nobody replays {', '.join(sorted(part.left_out))}; omitted")
         publishers = Publishers(session, part.channels())
         damage = recording.damage.text()  # all of it has been read; the playback may end early
-        stats = _play(arguments, session, part, publishers)
-        disconnected = not session.connected
-    _report(stats, arguments.json)
-    if damage:
-        _warn(f"{recording.path}: {damage}")
-    if disconnected:
-        _warn("bus disconnected: the replay ended early")
-    return int(disconnected)
+        stats, disconnected = _play(arguments, session, part, publishers)
+        _report(stats, arguments.json)  # a session whose router hangs takes seconds to close
+        if damage:
+            _warn(f"{recording.path}: {damage}")
+        if disconnected:
+            _warn("bus disconnected: the replay ended early")
+        return int(disconnected)
 
 
 def _play(
     arguments: argparse.Namespace, session: Session, part: RecordingPart, publishers: Publishers
-) -> PlaybackStats:
+) -> tuple[PlaybackStats, bool]:
+    """What was played, and whether the bus has ended it: not where people did so before."""
     clock = MonotonicClock()
     unmatched = publishers.wait(arguments.wait)
     if unmatched:
@@ -142,8 +142,9 @@ def _play(
         playback = PlaybackClock(start_ns, clock.now_ns(), arguments.rate, arguments.paused)
         while player.play(part.messages(), playback) and arguments.loop:
             playback.jump(start_ns, clock.now_ns())
+    stopped = stop.requested
     time.sleep(TAIL_S)
-    return player.stats
+    return player.stats, not (session.connected or stopped)
 
 
 def _steer(playback: PlaybackClock, key: str, now_ns: int) -> bool:
@@ -184,9 +185,10 @@ def _report(stats: PlaybackStats, as_json: bool) -> None:
     p50, p99, worst = (float(np.percentile(late_ms, q)) for q in (50, 99, 100))
     if as_json:
         figures = {"p50_ms": round(p50, 3), "p99_ms": round(p99, 3), "max_ms": round(worst, 3)}
-        print(json.dumps({"messages": stats.messages, "bytes": stats.bytes, "lateness": figures}))
+        print(json.dumps({"messages": stats.messages, "bytes": stats.bytes, "lateness": figures}), flush=True)
     else:
-        print(f"{stats.messages} messages, late by p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms")
+        line = f"{stats.messages} messages, late by p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms"
+        print(line, flush=True)
 
 
 def _warn(line: str) -> None:

@@ -1,7 +1,14 @@
-"""`tailor replay` on a secured bus: what it may not publish there is refused or named, never dropped without a word."""
+"""`tailor replay` on a secured bus: what it may not publish there is refused or named, never dropped without a word.
+
+And how it ends where the router has frozen.
+"""
+
+from contextlib import contextmanager
 
 import pytest
 
+from tailor.runtime.bus.session import Session
+from tailor.runtime.stopping import Stop
 from tailor.schemas.messages import ArmRequest, Odometry
 from tailor.tools.commands.look import replay
 from tailor.tools.main import main
@@ -48,3 +55,30 @@ def test_one_of_which_nothing_would_arrive_is_refused(recording, capsys):
     remap = ("--topics", "lidar/odom", "--remap", "lidar/odom=agilo/cmd_vel2")
     assert replayed(recording, *remap) == 2
     assert "nobody replays agilo/cmd_vel2, expected other topics, or an open bus" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("lost_first", "code"), [(False, 0), (True, 1)])
+def test_one_that_people_stop_has_not_been_ended_by_a_router_that_has_frozen(
+    recording, capsys, monkeypatch, lost_first, code
+):
+    """Its session is missed 1 s later, and takes ten more to close, in which nothing was printed."""
+    stop, read = Stop(), []
+
+    def connected(session):
+        stop.requested = not lost_first
+        return False
+
+    @contextmanager
+    def closing(*arguments):
+        with opened(*arguments) as session:
+            yield session
+            read.append(capsys.readouterr())
+
+    opened = replay.open_bus
+    monkeypatch.setattr(replay, "open_bus", closing)
+    monkeypatch.setattr(replay, "stop_on_signals", lambda: stop)
+    monkeypatch.setattr(Session, "connected", property(connected))
+    assert replayed(recording, "--topics", "odom") == code
+    [(output, errors)] = read
+    assert output.startswith("0 messages")
+    assert ("bus disconnected" in errors) == lost_first
