@@ -26,6 +26,7 @@ class CopyResult:
 
     kept: int = 0
     left_out: int = 0
+    attachments: int = 0
     damage: DamageReport = field(default_factory=DamageReport)  # of the source
 
 
@@ -86,14 +87,19 @@ class _Copy:
         return self._new_schemas[identity]
 
 
-def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> CopyResult:
+def copy(
+    source: Path, target: Path, keep: Keep, note: Mapping[str, str], attachments_alone: bool = False
+) -> CopyResult:
     """Copy the messages that `keep` selects, all metadata and attachments, into a new file with index and footer.
+
+    Where nothing is kept there is no new file: it would hold metadata alone, and be in the way of the next attempt.
 
     Args:
       source: MCAP file, damaged or not.
       target: New file.
       keep: Predicate of key, ROS type and log time in ns.
       note: Entries of the metadata record "copy".
+      attachments_alone: Whether attachments without any message are worth a file.
 
     Raises:
       UsageError: The source is missing or no MCAP file, or the target exists or cannot be written and is removed.
@@ -106,6 +112,8 @@ def copy(source: Path, target: Path, keep: Keep, note: Mapping[str, str]) -> Cop
         _copy_records(source, _Copy(writer, Declared(source)), keep, copied)
         writer.add_metadata("copy", {"of": utf8_name(source), "damage": copied.damage.text(), **note})
         writer.finish()
+        if not (copied.kept or (attachments_alone and copied.attachments)):
+            target.unlink()
     return copied
 
 
@@ -127,6 +135,7 @@ def _copy_records(source: Path, copy_: _Copy, keep: Keep, copied: CopyResult) ->
         elif isinstance(record, r.Metadata):
             copy_.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, r.Attachment):
+            copied.attachments += 1
             copy_.writer.add_attachment(
                 record.create_time, record.log_time, record.name, record.media_type, record.data
             )

@@ -56,8 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     note = {"from_s": f"{arguments.start:g}", "to_s": "" if arguments.end is None else f"{arguments.end:g}"}
     copied = copy(recording.path, target, keep, note)
-    if not copied.kept:
-        target.unlink()  # it holds metadata alone, and would be in the way of the next attempt
     written = str(target) if copied.kept else None
     found = {"output": written, "kept": copied.kept, "left_out": copied.left_out, "damage": copied.damage.text()}
     if arguments.json:

@@ -21,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0, also if the file is not damaged; 1 if no message could be recovered."""
+    """0, also if the file is not damaged; 1 if no message could be recovered: a new file then for attachments alone."""
     source = Path(arguments.file)
     damage = DamageReport()
     for _ in scan(source, damage, with_attachments=True):
@@ -30,16 +30,19 @@ def run(arguments: argparse.Namespace) -> int:
         _print(arguments.json, {"file": str(source), "damage": ""}, f"{source}: not damaged, nothing to recover")
         return 0
     target: Path = arguments.output or beside(source, "-recovered.mcap")
-    copied = copy(source, target, lambda *_: True, {})
+    copied = copy(source, target, lambda *_: True, {}, attachments_alone=True)
+    written = str(target) if copied.kept or copied.attachments else None
     found = {
         "file": str(source),
         "damage": copied.damage.text(),
-        "output": str(target),
+        "output": written,
         "recovered": copied.kept,
         "of_unknown_channels": copied.left_out,
     }
     rest = f"{copied.kept} messages recovered, {copied.left_out} of unknown channels skipped"
-    _print(arguments.json, found, f"{source}: {copied.damage.text()}", f"{target}: {rest}")
+    if written is None:
+        rest += "; no file is written"
+    _print(arguments.json, found, f"{source}: {copied.damage.text()}", f"{written or source}: {rest}")
     return 0 if copied.kept else 1
 
 

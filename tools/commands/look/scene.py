@@ -55,7 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """0; for a recording 1 if it has no run whose robot is known."""
+    """0; for a recording 1 if it has no run whose robot is known; then there is no new file."""
     if sum((arguments.live, arguments.recording is not None, arguments.layout is not None)) != 1:
         raise UsageError("expected a recording, --live or --layout DOMAIN")
     if arguments.sender and not arguments.live:
@@ -77,7 +77,9 @@ def _write(arguments: argparse.Namespace) -> int:
     warn(source, damage)
     if feed.fault:
         print(plain(f"the scene of {feed.robot}: {feed.fault}"), file=sys.stderr)
-    print(f"{target}: {added} messages added")
+    if not added:
+        target.unlink()
+    print(plain(f"{target}: {added} messages added" if added else f"{source}: no messages to add; no file is written"))
     return 0 if added else 1
 
 

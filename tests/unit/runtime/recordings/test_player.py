@@ -193,6 +193,36 @@ def test_a_cut_that_selects_nothing_leaves_no_file(tmp_path, capsys):
     assert target.exists()
 
 
+def torn(path, attachment=False):
+    """A recording without messages and without its end."""
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2")
+        if attachment:
+            writer.add_attachment(1, 2, "camera.yaml", "text/yaml", b"focal: 525")
+        writer.finish()
+    path.write_bytes(path.read_bytes()[:-20])
+    return path
+
+
+def test_a_recovery_that_finds_nothing_leaves_no_file(tmp_path, capsys):
+    """It was one without messages, which the next attempt was refused for, and which was printed as if it helped."""
+    source, target = torn(tmp_path / "a.mcap"), tmp_path / "b.mcap"
+    assert main(["recover", str(source), "-o", str(target)]) == 1
+    assert "0 of unknown channels skipped; no file is written\n" in capsys.readouterr().out
+    assert main(["recover", str(source), "-o", str(target), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["output"] is None
+    assert not target.exists()
+
+
+def test_a_recovery_that_finds_attachments_alone_keeps_them(tmp_path, capsys):
+    source, target = torn(tmp_path / "a.mcap", attachment=True), tmp_path / "b.mcap"
+    assert main(["recover", str(source), "-o", str(target)]) == 1
+    assert "no file is written" not in capsys.readouterr().out
+    with target.open("rb") as file:
+        assert [each.data for each in make_reader(file).iter_attachments()] == [b"focal: 525"]
+
+
 def test_a_damaged_attachment_is_reported_and_not_copied(tmp_path, capsys):
     path, new = foreign(tmp_path / "a.mcap", spoil=True), tmp_path / "b.mcap"
     assert main(["recover", str(path), "-o", str(new)]) == 0

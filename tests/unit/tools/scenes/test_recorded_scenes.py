@@ -12,6 +12,7 @@ from mcap.writer import Writer
 from tailor.runtime.recordings.mcap import channel_table
 from tailor.runtime.recordings.recording import Recording
 from tailor.schemas.errors import UsageError
+from tailor.tools.main import main
 from tailor.tools.scenes.recorded_scenes import add_scenes
 
 GOLDEN = "tests/data/golden/soccer-approach.mcap"
@@ -64,6 +65,16 @@ def test_messages_of_other_projects_keep_schema_encoding_and_metadata(tmp_path):
     add_scenes(source, target)
     assert _rows(target) == _rows(source)
     assert _rows(target)[0][0] == ("sensor_msgs/msg/Temperature", "ros2msg", b"float64 temperature")
+
+
+def test_a_recording_without_a_run_gets_no_copy(tmp_path, capsys):
+    """The copy was the recording itself under another name, which the next attempt was refused for."""
+    source = tmp_path / "foreign.mcap"
+    _write_foreign(source)
+    for _ in range(2):
+        assert main(["scene", str(source)]) == 1
+        assert capsys.readouterr().out == f"{source}: no messages to add; no file is written\n"
+    assert list(tmp_path.iterdir()) == [source]
 
 
 def test_channels_of_other_projects_stay_within_the_limit_of_senders(tmp_path):
