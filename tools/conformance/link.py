@@ -34,6 +34,10 @@ class Link(Protocol):
         """Time of this link, seconds."""
         ...
 
+    def wall_s(self, at_s: float) -> float:
+        """Time by the clock of stamps, seconds, at a time of this link."""
+        ...
+
     def wait(self, seconds: float) -> list[Heard]:
         """Let time pass; what was heard meanwhile."""
         ...

@@ -59,6 +59,10 @@ class LiveLink:
         """Monotonic time."""
         return time.monotonic()
 
+    def wall_s(self, at_s: float) -> float:
+        """Wall time, seconds since 1970, at a monotonic time, by today's distance of both clocks."""
+        return at_s + time.time() - time.monotonic()
+
     def wait(self, seconds: float) -> list[Heard]:
         """Listen for that long."""
         until_s, heard = time.monotonic() + seconds, list[Heard]()

@@ -20,6 +20,7 @@ class Report:
       responses: Of this robot; `models`: of the robot that the models were learned on; empty if not compared.
       misfits: Differences between both that matter.
       not_compared: Why the comparison was not possible; empty if it was, or was not wanted.
+      remarks: What people should know although no clause is broken.
     """
 
     robot: str
@@ -29,6 +30,7 @@ class Report:
     models: Sequence[Response] = ()
     misfits: Sequence[str] = ()
     not_compared: str = ""
+    remarks: Sequence[str] = ()
 
     @property
     def kept(self) -> bool:
@@ -83,6 +85,8 @@ def markdown(report: Report) -> str:
         parts += ["", advice(report)] if report.misfits else []
     if report.not_compared:
         parts += ["", f"Step responses: not tried: {report.not_compared}"]
+    if report.remarks:
+        parts += ["", "## Remarks", "", *(f"- {each}" for each in report.remarks)]
     return "\n".join([*parts, ""])
 
 

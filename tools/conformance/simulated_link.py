@@ -41,6 +41,10 @@ class SimulatedLink:
         """Simulated time."""
         return self._now_ns * 1e-9
 
+    def wall_s(self, at_s: float) -> float:
+        """The same: what is heard is stamped with simulated time."""
+        return at_s
+
     def wait(self, seconds: float) -> list[Heard]:
         """Run the node for that long."""
         until_ns = self._now_ns + round(seconds * 1e9)

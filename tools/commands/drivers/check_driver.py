@@ -27,6 +27,7 @@ from tailor.tools.conformance.fit import Response, differences, responses
 from tailor.tools.conformance.live_link import LiveLink, NoDriverError
 from tailor.tools.conformance.report import Report
 from tailor.tools.conformance.simulated_link import SimulatedLink
+from tailor.tools.conformance.stamp_offsets import stamp_offsets
 from tailor.tools.conformance.suite import clauses, verdicts
 from tailor.tools.launch.checks.driver_check import check_driver, driver_of
 from tailor.tools.lockstep.worlds import make_world
@@ -122,15 +123,17 @@ def _checked(bench: Bench, arguments: argparse.Namespace, named: list[str], kind
     for verdict in verdicts(bench, named):
         found.append(verdict)
         show(reports.line(verdict))
+    for remark in (remarks := tuple(stamp_offsets(bench))):
+        show(f"note: {remark}")
     robot: str = arguments.robot
     if arguments.no_fit or not spec_of_robot(robot).body:
-        return Report(robot, kind, found)
+        return Report(robot, kind, found, remarks=remarks)
     try:
         real, models = _fit(bench, 1.0 if arguments.top_speed else arguments.speed)
     except NotPossible as error:
         show(f"fit: not tried: {error}")
-        return Report(robot, kind, found, not_compared=str(error))
-    report = Report(robot, kind, found, real, models, list(differences(real, models)))
+        return Report(robot, kind, found, not_compared=str(error), remarks=remarks)
+    report = Report(robot, kind, found, real, models, list(differences(real, models)), remarks=remarks)
     for misfit in report.misfits or ["it moves as the models' robot does"]:
         show(f"fit: {misfit}")
     if report.misfits:
