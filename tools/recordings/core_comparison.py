@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from tailor.runtime.recordings.recording import Recorded
 from tailor.schemas.codec import encode
 from tailor.schemas.messages import Message, RefinementReport
 from tailor.schemas.topics import TOPICS, key_of
-from tailor.tools.recordings.differences import Difference, first_field, rounding_apart, with_proof_of
+from tailor.tools.recordings.differences import NONE, Difference, first_field, rounding_apart, with_proof_of
 from tailor.tools.recordings.executive_run import RecordedRun, decoded
 from tailor.tools.recordings.recorded_outputs import Absent, RecordedOutputs, before_gap
 
@@ -28,17 +28,28 @@ class RunComparison:
       exact: Whether every bit counts; else rounding is tolerated and counted.
       exact_proofs: The same of optimality gaps.
       proofs: Whether optimality gaps are compared, too.
+      dropped: Keys of which the recorder dropped messages: what follows the last one of such a key may be lost.
     """
 
-    def __init__(self, run: RecordedRun, robot: str, exact: bool, exact_proofs: bool, proofs: bool = True) -> None:
+    def __init__(
+        self,
+        run: RecordedRun,
+        robot: str,
+        exact: bool,
+        exact_proofs: bool,
+        proofs: bool = True,
+        dropped: Collection[str] = (),
+    ) -> None:
         self.ticks = self.compared = self.rounded = 0
         self._robot, self._exact, self._exact_proofs, self._proofs = robot, exact, exact_proofs, proofs
-        self._last_tick, self._last_stamp_ns = run.ticks[-1].tick, run.ticks[-1].stamp_ns
-        self._published = {key: RecordedOutputs(messages) for key, messages in run.published.items()}
+        self._reports, self._dropped = run.ticks, dropped
+        self._published = {key: RecordedOutputs(messages, key in dropped) for key, messages in run.published.items()}
         self._last_report: Message | None = None  # of refinement, without its gap
         if not proofs and REFINEMENT in run.published:
             whole = before_gap(reports := run.published[REFINEMENT])  # beyond, no number tells which one is which
-            self._published[REFINEMENT] = RecordedOutputs(_without_proofs(whole), len(whole) < len(reports))
+            self._published[REFINEMENT] = RecordedOutputs(
+                _without_proofs(whole), len(whole) < len(reports) or REFINEMENT in dropped
+            )
 
     def tick(self, tick: int, outputs: tuple[Output, ...]) -> Difference | None:
         """First difference between the recorded outputs of a tick and today's."""
@@ -47,12 +58,13 @@ class RunComparison:
             key = key_of(output.topic, self._robot)
             if not self._proofs and key == REFINEMENT and self._is_repeated(output.message):
                 continue
-            recorded = self._published.setdefault(key, RecordedOutputs(())).take()
-            if recorded is Absent.LOST or (recorded is Absent.NONE and tick == self._last_tick):
-                continue  # in the second case the recording ends within this tick
+            outputs_then = self._published.setdefault(key, RecordedOutputs((), key in self._dropped))
+            recorded = outputs_then.take(ends_here=tick == self._reports[-1].tick)
+            if recorded is Absent.LOST:
+                continue
             self.compared += 1
             if isinstance(recorded, Absent):
-                return Difference(tick, key, "message", "none", str(output.message))
+                return Difference(tick, key, "message", NONE, str(output.message))
             difference = self._message(tick, recorded, output.message)
             if difference is not None:
                 return difference
@@ -63,11 +75,22 @@ class RunComparison:
 
         One of a tick without a report counts as none: its executive ended, or the recording does, within that tick.
         """
-        for key, outputs in self._published.items():
-            following = outputs.following
-            if following is not None and getattr(decoded(following), "stamp_ns", 0) <= self._last_stamp_ns:
-                return Difference(self.ticks, key, "message", f"number {outputs.taken + 1}", "none")
+        left = [
+            (self._tick_of(decoded(following)), key, outputs.taken + 1)
+            for key, outputs in self._published.items()
+            if (following := outputs.following) is not None
+        ]
+        reported = [each for each in left if each[0] <= self._reports[-1].tick]
+        for tick, key, number in sorted(reported)[:1]:
+            return Difference(tick, key, "message", f"number {number}", NONE)
         return None
+
+    def _tick_of(self, message: Message) -> int:
+        """Number of the tick that a message was published in; one beyond the last one without a report."""
+        stamp_ns, last = getattr(message, "stamp_ns", 0), self._reports[-1]
+        if not stamp_ns:
+            return last.tick
+        return next((report.tick for report in self._reports if report.stamp_ns >= stamp_ns), last.tick + 1)
 
     def lost(self) -> str:
         """Outputs that were published and are not recorded, as text; empty if there are none."""

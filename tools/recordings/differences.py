@@ -10,6 +10,7 @@ from tailor.schemas.messages import RefinementReport
 
 ROUNDING = 1e-9  # of 1 or of the value: errors of libm in the last bit (1e-16), amplified over a run
 PROOF_ROUNDING_PCT = 0.01  # single-precision products of a bound (1e-7) decide which boxes a proof divides next
+NONE = "none"  # in place of a message that one side lacks
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +22,11 @@ class Difference:
     field: str
     recorded: str
     today: str
+
+    @property
+    def may_be_loss(self) -> bool:
+        """Whether the recording may have lost what it lacks: no later message of the key shows its number."""
+        return self.recorded == NONE and self.field == "message"
 
     def __str__(self) -> str:
         return f"tick {self.tick}, {self.key}, {self.field}: recorded {self.recorded}, today {self.today}"

@@ -28,11 +28,11 @@ class RecordedOutputs:
         self._messages, self._ends_early = messages, ends_early
         self._at = self._number = 0  # messages taken, outputs of today
 
-    def take(self) -> Recorded | Absent:
-        """What is recorded of today's next output."""
+    def take(self, ends_here: bool = False) -> Recorded | Absent:
+        """What is recorded of today's next output; `ends_here`: the recording may end just before it."""
         self._number += 1
         following = self.following
-        if following is None and not self._ends_early:
+        if following is None and not (self._ends_early or ends_here):
             return Absent.NONE
         if following is None or following.sequence > self._number:
             self.lost += 1

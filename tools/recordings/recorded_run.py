@@ -27,7 +27,7 @@ class RecordedRuns:
 
     Anyone may publish on exec/tick. A run consists of the messages of one sender that also published provenance which
     can be read; without any provenance, every sender of ticks has a run. Other messages on exec/tick are counted in
-    `left_out`.
+    `left_out`. `dropped` are the keys of which the recorder dropped messages.
     """
 
     def __init__(self, path: Path) -> None:
@@ -39,6 +39,7 @@ class RecordedRuns:
         recording = open_recording(path)
         everything = list(_bounded(recording))
         self.damage = recording.damage  # of the file
+        self.dropped = {key for name, counts in recording.metadata() if name == "drops" for key in counts}
         by_sender = {sender: RecordedRun(sender) for sender in executives(everything)}
         for message in everything:
             # of equal numbers the first one: an executive refuses the others

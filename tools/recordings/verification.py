@@ -22,6 +22,7 @@ from tailor.tools.recordings.executive_run import RecordedRun
 from tailor.tools.recordings.recorded_run import RecordedRuns
 from tailor.tools.recordings.recorded_source import source_contrast
 
+MAY_BE_LOSS = "\n  unless the recording lost it: of {} nothing later is recorded whose number would show that"
 END_NS = 2**31 * 10**9  # of the seconds in a ROS message
 
 
@@ -81,7 +82,9 @@ def verify(
     """
     here, there = platform_fingerprint(), run.provenance.get("machine", {})
     kin = same_kind(there, here)
-    comparison = RunComparison(run, context.domain.robot, kin, same_products(there, here), proofs=proofs)
+    comparison = RunComparison(
+        run, context.domain.robot, kin, same_products(there, here), proofs=proofs, dropped=runs.dropped
+    )
     with gc_frozen():  # as live
         began_s = time.perf_counter()
         used = context if proofs else without_proofs(context)
@@ -151,7 +154,8 @@ def verdict_text(verdict: Verdict) -> str:
     ends = f"\n  not verified to the end: {plain(verdict.ends)}" if verdict.ends else ""
     machines = f"\n  recorded on {plain(verdict.machines)}" if verdict.machines else ""
     if verdict.difference is not None:
-        return f"different: {plain(str(verdict.difference))}\n  {verdict.source}{lost}{machines}{left_out}"
+        doubt = MAY_BE_LOSS.format(plain(verdict.difference.key)) if verdict.difference.may_be_loss else ""
+        return f"different: {plain(str(verdict.difference))}\n  {verdict.source}{doubt}{lost}{machines}{left_out}"
     if verdict.rounded:
         rounded = f"{verdict.rounded} of them not to the last bit"
         within = f"{ROUNDING:g}, gaps within {PROOF_ROUNDING_PCT:g} %"

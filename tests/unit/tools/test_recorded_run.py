@@ -15,7 +15,7 @@ from tailor.runtime.recordings.mcap.writer import McapWriter
 from tailor.runtime.recordings.recording import open_recording
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import UsageError
-from tailor.schemas.messages import EStop, Provenance, TickReport, VelocityCommand
+from tailor.schemas.messages import EStop, PlanReport, Provenance, TickReport, VelocityCommand
 from tailor.schemas.typesystem import ros_type
 from tailor.tools.main import main
 from tailor.tools.recordings.executive_run import PROVENANCE_KEY, TICK_KEY
@@ -38,9 +38,9 @@ def executive(whole):
     return next(message.sender for message in whole if message.key == TICK_KEY)
 
 
-def written(path, messages, extra=()):
+def written(path, messages, extra=(), metadata=None):
     """Recording of the messages and extra ones on exec/tick: (sender, bytes, ROS type)."""
-    tape = McapWriter(path, {}, compact=True)
+    tape = McapWriter(path, metadata or {}, compact=True)
     rows = [(m.key, m.data, m.sender, m.sequence, m.ros_type) for m in messages]
     rows[20:20] = [(TICK_KEY, data, sender, 9000 + n, kind) for n, (sender, data, kind) in enumerate(extra)]
     for n, (key, data, sender, sequence, kind) in enumerate(rows):
@@ -249,6 +249,44 @@ def test_an_output_that_a_recording_lost_is_no_difference(tmp_path, capsys, whol
     verdict, lost, *_ = capsys.readouterr().out.splitlines()
     assert verdict.startswith("equal: ")
     assert lost == LOST.format(key)
+
+
+@pytest.mark.parametrize("key", ["agilo/cmd_vel", "exec/status", "exec/plan"])
+def test_an_output_of_the_last_tick_that_is_not_recorded_is_counted(tmp_path, capsys, whole, key):
+    """The recording was called equal to its end: the tick's report is published last, so the output was, too."""
+    last = next(m for m in reversed(whole) if m.key == key)
+    assert main(["verify", str(written(tmp_path / "a.mcap", [m for m in whole if m is not last]))]) == 2
+    assert capsys.readouterr().out.splitlines()[1] == LOST.format(key)
+
+
+@pytest.mark.parametrize("flags", [[], ["--without-proofs"]], ids=["all", "without proofs"])
+def test_the_last_output_of_a_key_of_which_the_recorder_dropped_messages_is_no_difference(
+    tmp_path, capsys, whole, flags
+):
+    """No later number shows the loss; the recorder's own count does. It was called a difference of the core."""
+    kept = [m for m in whole if m.key != "exec/refinement"]
+    path = written(tmp_path / "a.mcap", kept, metadata={"drops": {"exec/refinement": "1"}})
+    assert main(["verify", str(path), *flags]) == 2
+    assert capsys.readouterr().out.splitlines()[1] == LOST.format("exec/refinement")
+
+
+def test_a_difference_that_may_be_a_loss_is_called_so(tmp_path, capsys, whole):
+    kept = [m for m in whole if m.key != "exec/refinement"]
+    assert main(["verify", str(written(tmp_path / "a.mcap", kept))]) == 1
+    output = capsys.readouterr().out
+    assert "exec/refinement, message: recorded none" in output
+    assert "\n  unless the recording lost it: of exec/refinement nothing later is recorded" in output
+
+
+def test_an_output_that_today_s_core_does_not_publish_is_placed_in_its_tick(tmp_path, capsys, whole):
+    """It was found at the end, and placed there."""
+    plan = next(m for m in whole if m.key == "exec/plan")
+    stamped = replace(decode(PlanReport, plan.data), stamp_ns=2_000_000_000)
+    added = replace(plan, sequence=3, data=encode(stamped))
+    assert main(["verify", str(written(tmp_path / "a.mcap", [*whole, added]))]) == 1
+    output = capsys.readouterr().out
+    assert output.startswith("different: tick 20, exec/plan, message: recorded number 3, today none\n")
+    assert "unless the recording lost it" not in output
 
 
 def test_a_difference_after_an_output_that_was_lost_counts(tmp_path, capsys, whole):
