@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tailor.models.episodes.distinct import check_distinct
 from tailor.models.episodes.manifest import read_manifest
-from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, read_part
+from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, parts_of, read_part
 from tailor.models.episodes.sources import CALIBRATES, PROBE, SELECTED, end_of, probe_of, source_files, source_of
 from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
@@ -152,9 +152,9 @@ def read_data_set(folder: Path) -> DataSet:
     names = [argument["name"] for argument in manifest["arguments"]]
     episodes: list[Episode] = []
     digest = hashlib.sha256()
-    for path in sorted(folder.glob("part-*.parquet")):
-        digest.update(path.read_bytes())
+    for path in parts_of(folder):
         episodes.extend(_episodes(read_part(path, names), names, manifest))
+        digest.update(path.read_bytes())
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
         repeated = next(number for number, count in Counter(numbers).items() if count > 1)

@@ -77,7 +77,7 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     Raises:
       UsageError: The file is missing, cannot be read, or is not a manifest.
     """
-    if not (folder / MANIFEST).exists():
+    if not (folder / MANIFEST).is_file():  # a named pipe would be waited for
         raise UsageError(f"{folder}: no {MANIFEST}, expected a data set (`tailor gather` writes them)")
     manifest = read_json(folder / MANIFEST, "a manifest (`tailor gather` writes them)")
     problem = _manifest_error(manifest)

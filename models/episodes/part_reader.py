@@ -30,6 +30,19 @@ OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
 MAX_ROWS = 2_000_000  # two days at 10 Hz; a megabyte may hold billions, which memory does not
 
 
+def parts_of(folder: Path) -> list[Path]:
+    """The parts of a data set, in order.
+
+    Raises:
+      UsageError: One is no file: a named pipe would be waited for, and a device has no end.
+    """
+    found = sorted(folder.glob("part-*.parquet"))
+    for path in found:
+        if not path.is_file():
+            raise UsageError(f"{path}: is no file, expected a part of a data set")
+    return found
+
+
 def read_part(path: Path, names: Sequence[str]) -> pa.Table:
     """Read and check one part.
 

@@ -9,6 +9,7 @@ from tailor.models.cards.card import MAX_CARD_BYTES, MAX_MODEL_BYTES, card_path
 from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
 from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.episodes.part_reader import parts_of
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
@@ -62,7 +63,7 @@ def write_data(data: Path, licence: str | None, folder: Path) -> None:
     if len(robots) != 1:
         found = ", ".join(robots) or "none"
         raise UsageError(f"{data}: data sets of {found}, expected those of one robot (`tailor gather` writes them)")
-    parts = [part for each in sets for part in sorted(each.glob("part-*.parquet"))]
+    parts = [part for each in sets for part in parts_of(each)]
     files = [file.relative_to(data) for file in (*parts, *(each / MANIFEST for each in sets))]
     rows = sum(map(_rows, parts))
     _copy(data, files, folder)

@@ -88,6 +88,8 @@ def scan(path: Path, damage: DamageReport, with_chunks: bool = True, with_attach
       UsageError: The file is missing, or not an MCAP file.
     """
     try:
+        if path.is_fifo():  # waited for until somebody writes; and no index of it can be read
+            raise UsageError(f"{path}: is a pipe, expected a recording in a file")
         with path.open("rb") as file:
             size = path.stat().st_size
             if file.read(len(MAGIC)) != MAGIC:

@@ -16,7 +16,7 @@ import pytest
 
 from tailor.models.episodes import part_reader
 from tailor.models.episodes.episodes import DataSet, Episode, merge, read_data_set, write_part
-from tailor.models.episodes.manifest import write_manifest
+from tailor.models.episodes.manifest import MANIFEST, write_manifest
 from tailor.schemas.errors import UsageError
 from tests.support import standin
 
@@ -144,6 +144,30 @@ def test_a_damaged_part_is_named(folder: Path, damage: Callable[[Path], object],
         read_data_set(folder)
     assert str(folder / PART) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "make_one",
+    [os.mkfifo, Path.mkdir, lambda path: path.symlink_to("/dev/zero"), lambda path: path.symlink_to(path.name)],
+    ids=["pipe", "folder", "device", "loop"],
+)
+def test_a_part_that_is_no_file_is_refused_unread(
+    folder: Path, monkeypatch, make_one: Callable[[Path], object]
+) -> None:
+    """Training waited for ever for a pipe, and took all memory for a device without an end."""
+    monkeypatch.setattr("tailor.models.episodes.episodes.read_part", lambda *_: pytest.fail("it is read"))
+    make_one(folder / "part-000006-000012.parquet")
+    with pytest.raises(UsageError, match=r"part-000006-000012\.parquet: is no file, expected a part of a data set"):
+        read_data_set(folder)
+
+
+def test_a_manifest_that_is_a_pipe_is_none(folder: Path, monkeypatch) -> None:
+    """It was waited for without end."""
+    monkeypatch.setattr("tailor.models.episodes.manifest.read_json", lambda *_: pytest.fail("it is read"))
+    (folder / MANIFEST).unlink()
+    os.mkfifo(folder / MANIFEST)
+    with pytest.raises(UsageError, match=r"no manifest.json, expected a data set"):
+        read_data_set(folder)
 
 
 def test_a_part_that_no_memory_holds_is_refused_unread(folder: Path, monkeypatch) -> None:

@@ -1,6 +1,7 @@
 """Hostile recordings: every command that reads one ends soon, with a result or one clear line."""
 
 import json
+import os
 import struct
 from dataclasses import replace
 from pathlib import Path
@@ -180,6 +181,14 @@ def test_a_hole_is_passed_without_looking_for_a_chunk_at_every_byte(tmp_path, mo
     path = tmp_path / "sparse.mcap"
     path.write_bytes(MAGIC + bytes(3 * scan.WINDOW_BYTES))
     assert list(open_recording(path).messages()) == []
+
+
+def test_a_pipe_is_refused_instead_of_waited_for(tmp_path, monkeypatch):
+    """Every command that reads a recording stood still, without a word."""
+    monkeypatch.setattr(Path, "open", lambda path, mode: pytest.fail("it is opened"))
+    os.mkfifo(tmp_path / "a.mcap")
+    with pytest.raises(UsageError, match=r"a\.mcap: is a pipe, expected a recording in a file"):
+        open_recording(tmp_path / "a.mcap")
 
 
 def test_recover_returns_1_if_nothing_could_be_recovered(tmp_path, capsys):
