@@ -20,6 +20,7 @@ from tailor.tools.cli.terminal import table_console
 from tailor.tools.learning.card_lines import missed_failures
 from tailor.tools.learning.changed_episodes import changed_episodes_warning
 from tailor.tools.learning.model_folders import target_zoo
+from tailor.tools.learning.other_choosers import other_choosers_warning
 from tailor.tools.learning.recipe import MAX_SEED
 from tailor.tools.learning.training_request import (
     DEFAULT_CLEARANCE_LEARNER,
@@ -88,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         clearance_learner=arguments.clearance_learner,
     )
     request = checked(request)
-    if warning := changed_episodes_warning(request):
+    for warning in filter(None, (changed_episodes_warning(request), other_choosers_warning(request))):
         print(f"warning: {warning}", file=sys.stderr)
     rows = _trained(request, quiet=arguments.json)
     if arguments.json:
