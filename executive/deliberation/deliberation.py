@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from tailor.executive import planning
 from tailor.executive.deliberation.context import Context
 from tailor.executive.deliberation.plan_found import PlanFound
+from tailor.executive.deliberation.plan_selection import PlanSelection
 from tailor.executive.deliberation.plan_source import PlanSource
 from tailor.executive.interfaces.budget import Budget
 from tailor.executive.interfaces.reasons import Cause, Reason
@@ -18,13 +19,10 @@ from tailor.executive.interfaces.values import Belief
 from tailor.executive.refinement.assertion.assertion import Assertion
 from tailor.executive.refinement.assertion.relaxed_limits import relaxed
 from tailor.executive.refinement.belief_monitor import BeliefMonitor
-from tailor.executive.refinement.instantiation import MAX_ACTIONS, Pattern
 from tailor.executive.refinement.objective.choice import Choice
 from tailor.executive.refinement.objective.sequence import ActionSequence, Failure
-from tailor.executive.refinement.plan_choice import PlanChoice, score_for
 from tailor.executive.refinement.refinement import Refinement
 
-ALTERNATIVES_LIMIT = 3000  # plans generated in search of other plans, with plan_costs = "models": at most half a second
 Stage = Literal["planning", "asserting", "refining", "decided", "failed"]
 
 
@@ -71,14 +69,10 @@ class Deliberation:
         self.sequence: ActionSequence | None = None
         self.refinement: Refinement | None = None
         self._context = context
-        self._belief = belief
         self._now_ns = now_ns
         self._start = start or {}
         self._rng = np.random.default_rng([context.settings.seed, 3, number])
-        self._found: PlanFound | None = None  # whose plan is being compared
-        self._plan_choice: PlanChoice | None = None  # between the source's plan and others
-        self._check: planning.PacedWork[str] | None = None  # of the plan chosen
-        self._pattern: Pattern | None = None
+        self._selection = PlanSelection(context, belief, source, number)
         self._watch: BeliefMonitor | None = None
         self._assertion: Assertion | None = None
 
@@ -126,7 +120,7 @@ class Deliberation:
         return self.plan is not None and not self.plan.steps
 
     def _plan(self, budget: Budget) -> None:
-        result = self._chosen(budget)
+        result = self._selection.advance(budget)
         if result is None:
             return
         self.plan_results += (result,)
@@ -138,45 +132,10 @@ class Deliberation:
         if not result.plan.steps:
             self.stage = "decided"
             return
-        self._instantiate(result.plan)
+        self._instantiate()
 
-    def _chosen(self, budget: Budget) -> PlanFound | None:
-        """The source's next result, of a search with the plan that the models predict to be fastest if so set."""
-        if self._found is None:
-            self._found = self.source.advance(budget)
-            if self._found is None:
-                return None
-            if self._context.settings.plan_costs == "models" and self._found.way == "searched" and self._found.plan:
-                self._plan_choice = self._choice_from(self._found.plan)
-        choice = self._plan_choice
-        if choice is not None and self._check is None and not choice.advance(budget):
-            return None
-        found = self._found
-        if choice is not None and found.plan is not choice.best:
-            if self._check is None:
-                objects = planning.Objects(self.source.problem)
-                self._check = planning.PacedWork(planning.validation(choice.best, self._context.pddl_domain, objects))
-            if not self._check.advance(budget):
-                return None
-            found = found if self._check.result else replace(found, plan=choice.best)
-        self._found, self._plan_choice, self._check = None, None, None
-        return found
-
-    def _choice_from(self, first: planning.Plan) -> PlanChoice:
-        context, source = self._context, self.source
-        settings = replace(context.settings.planner, node_limit=ALTERNATIVES_LIMIT)
-        others = planning.PlanEnumeration(source.problem, settings, source.ground, first)
-        seed = [context.settings.seed, 4, self.number]
-        score = score_for(
-            context.domain, context.scenario, context.models, context.settings.refinement, self._belief, seed
-        )
-        return PlanChoice(first, others, score)
-
-    def _instantiate(self, plan: planning.Plan) -> None:
-        settings = self._context.settings.refinement
-        length = max(MAX_ACTIONS, settings.horizon)
-        self._pattern = Pattern(plan, self._context.domain, self._context.scenario, length)
-        sequence = self._pattern.sequence(self._belief)
+    def _instantiate(self) -> None:
+        sequence, settings = self._selection.sequence, self._context.settings.refinement
         if isinstance(sequence, Failure):
             self._fail(Cause(Reason.NOT_INSTANTIABLE, sequence.reason))
             return
@@ -185,7 +144,6 @@ class Deliberation:
 
     def _assert(self, budget: Budget) -> None:
         assert self._assertion is not None
-        assert self._pattern is not None
         sequence = self._assertion.advance(budget)
         if sequence is None:
             return
@@ -195,9 +153,9 @@ class Deliberation:
         self._begin_refinement(sequence)
 
     def _begin_refinement(self, sequence: ActionSequence) -> None:
-        assert self._pattern is not None
+        assert self._selection.pattern is not None
         self.sequence = sequence
-        self._watch = BeliefMonitor(self._pattern, sequence)
+        self._watch = BeliefMonitor(self._selection.pattern, sequence)
         self.refinement = Refinement(
             sequence,
             self._context.models,

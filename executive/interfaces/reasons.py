@@ -105,7 +105,9 @@ REASONS: dict[Reason, Row] = {
     ),
     Reason.SEARCH_LIMIT: Row(TASK, "the search reached a limit without a plan", "the limit"),
     Reason.PDDL_UNSUPPORTED: Row(TASK, "the search does not support the problem", "the construct"),
-    Reason.NOT_INSTANTIABLE: Row(TASK, "the predicates over a label exclude each other", "step and label"),
+    Reason.NOT_INSTANTIABLE: Row(
+        TASK, "the predicates over a label exclude each other, in all plans tried", "step and label"
+    ),
     Reason.NO_SUBGOAL: Row(TASK, "no asserted subgoal makes the plan likely to succeed", "action"),
     Reason.NO_VALID_CHOICE: Row(TASK, "every choice of the free parameters is predicted to fail", ""),
     Reason.GOAL_TOO_LONG: Row(GOAL, "the goal's text does not fit into a status", "its length and the maximum"),
