@@ -11,6 +11,7 @@ from unified_planning.io import PDDLWriter
 from tailor.executive.planning import Unsupported
 from tailor.executive.planning.pddl.action_reader import NUMERIC_EFFECTS
 from tailor.executive.planning.pddl.formula_reader import CONNECTIVES
+from tailor.tools.up_engine.quantifiers import exact_quantifiers
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +33,11 @@ def written(original: Any) -> Written:
     Raises:
       Unsupported: PDDL, or the writer, has no words for it.
     """
+    with exact_quantifiers(original):
+        return _written(original)
+
+
+def _written(original: Any) -> Written:
     goals = [goal.simplify() for goal in original.goals]
     try:
         _check_costs(original)

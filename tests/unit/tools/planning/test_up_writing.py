@@ -13,12 +13,16 @@ from unified_planning.shortcuts import (
     BoolType,
     DurativeAction,
     EndTiming,
+    Equals,
+    Exists,
     Fluent,
     Forall,
     GlobalStartTiming,
+    Implies,
     InstantaneousAction,
     IntType,
     MinimizeActionCosts,
+    Not,
     OneshotPlanner,
     PlanValidator,
     Problem,
@@ -142,3 +146,31 @@ def test_timed_effects_under_a_condition_are_not_supported():
         result = planner.solve(opening(condition=done))
     assert result.status is Status.UNSUPPORTED_PROBLEM
     assert result.log_messages[0].message == "a timed effect under a condition is not supported"
+
+
+@pytest.mark.parametrize("place", ["precondition", "effect", "goal"])
+@pytest.mark.parametrize("has_objects", [False, True])
+@pytest.mark.parametrize("formula", ["for all", "exists", "not for all", "exists equal", "implies"])
+def test_variables_that_a_formula_does_not_have_count_as_well(formula, has_objects, place):
+    kind = UserType("thing")
+    one, other, problem = Variable("one", kind), Variable("other", kind), with_goal()
+    if has_objects:
+        problem.add_object("object1", kind)
+    idle, act = problem.fluent("other"), problem.action("act")
+    condition, without_objects = {
+        "for all": (Forall(idle, one), True),
+        "exists": (Exists(Not(idle), one), False),
+        "not for all": (Not(Forall(idle, one)), False),
+        "exists equal": (Exists(Not(idle) & Equals(one, other), one, other), False),
+        "implies": (Implies(Exists(Not(idle), one), idle), True),
+    }[formula]
+    act.clear_effects()
+    act.add_effect(problem.fluent("done"), True, condition if place == "effect" else True)
+    if place == "precondition":
+        act.add_precondition(condition)
+    elif place == "goal":
+        problem.add_goal(condition)
+    problem.action("rest").clear_effects()
+    is_possible = without_objects if not has_objects else not without_objects
+    assert planned(problem).status is (Status.SOLVED_SATISFICING if is_possible else Status.UNSOLVABLE_PROVEN)
+    assert get_environment().simplifier.simplify(Forall(idle, one)) == idle(), "theirs again"
