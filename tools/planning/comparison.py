@@ -16,6 +16,7 @@ from tailor.executive.planning import Problem, Result, validate
 from tailor.executive.planning.pddl.formula_text import format_number
 from tailor.executive.planning.plan_quality import total_cost
 from tailor.runtime.planners.named import check_engine
+from tailor.tools.cli.plain_text import plain
 from tailor.tools.plan_search.sources import external
 
 
@@ -124,5 +125,5 @@ def table(rows: Sequence[Row], problem: str) -> Table:
     drawn.add_column("plan")
     for row in rows:
         numbers = ("-" if number is None else format_number(number) for number in (row.steps, row.makespan, row.cost))
-        drawn.add_row(row.planner, *numbers, f"{row.cpu_s:.2f}", f"{row.wall_s:.2f}", row.reason or "sound")
+        drawn.add_row(row.planner, *numbers, f"{row.cpu_s:.2f}", f"{row.wall_s:.2f}", plain(row.reason) or "sound")
     return drawn

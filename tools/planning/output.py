@@ -9,6 +9,7 @@ from typing import Any
 
 from tailor.executive.planning import Problem, Result, format_links, format_plan
 from tailor.executive.planning.pddl.syntax.errors import shortened
+from tailor.tools.cli.plain_text import plain
 
 
 def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu_ms: float) -> None:
@@ -18,7 +19,8 @@ def print_result(args: argparse.Namespace, result: Result, problem: Problem, cpu
         print(json.dumps(as_json(result, problem.name, cpu_ms)))
     elif plan is None:
         outcome = "no plan exists" if result.status == "unsolvable" else "no plan found"
-        print(shortened(f"{problem.name}: {outcome}: {result.reason}"), file=sys.stderr)
+        reason = plain(result.reason)  # quotes what an external planner printed
+        print(shortened(f"{problem.name}: {outcome}: {reason}"), file=sys.stderr)
     elif args.links:
         print(format_links(plan), end="")
     elif args.dot:

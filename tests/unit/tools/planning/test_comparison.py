@@ -147,3 +147,13 @@ def test_the_table_names_planners_and_verdicts(capsys):
     assert "tailor" in out
     assert "sound" in out
     assert "ended with code 0" in out
+
+
+def test_what_a_planner_prints_reaches_no_terminal_unescaped(capsys):
+    rude = printing("\x1b[2J rude")
+    assert main(["plan", *KITCHEN, "--planner", rude]) == 1
+    assert "code 0: '\\x1b[2J rude'" in capsys.readouterr().err
+    assert main(["plan", *KITCHEN, "--compare", "sh -c 'printf \\\\033[2J; echo rude'"]) == 0
+    table = capsys.readouterr().out
+    assert "\x1b" not in table
+    assert "\\x1b[2Jrude" in table
