@@ -1,7 +1,7 @@
 """The ROS 2 types of our messages: names, definition texts, hashes, and the bytes of one value.
 
-Only this module uses rosbags, except for its error type in codec.py; both load it when it is first needed.
-standard.py and own.py convert the fields.
+Only this module and ros_types/ use rosbags, except for its error type in codec.py; they load it when it is
+first needed. standard.py and own.py convert the fields.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from tailor.schemas.messages import Message
 from tailor.schemas.packages.msg_definitions import declarations, with_parts
-from tailor.schemas.packages.ros_names import ros_type
+from tailor.schemas.packages.ros_names import PACKAGE, ros_type
 from tailor.schemas.topics import TOPICS
 
 __all__ = [
@@ -30,8 +30,6 @@ __all__ = [
     "type_of",
     "typestore",
 ]
-# As ROS 2 Kilted has it. Jazzy writes `char` for uint8; rosbags gives that another hash than ROS 2 does.
-_EVENT_INFO = "uint8 event_type\nbuiltin_interfaces/Time stamp\nuint8[16] client_gid\nint64 sequence_number"
 MAX_DEFINITION_CHARS = 30_000  # ten times MarkerArray's with its comments; the parser takes 0.3 s for as many line ends
 MAX_ELEMENTS = 65536  # in one sequence; the longest legal message has fewer
 
@@ -50,16 +48,21 @@ def own_types() -> tuple[type, ...]:
 
 @cache
 def typestore() -> Any:
-    """rosbags' store of ROS 2 types with our own registered; made once, takes about 0.1 s."""
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+    """rosbags' store of ROS 2 types with our own registered; made once, takes about 0.1 s.
 
-    store = get_typestore(Stores.ROS2_JAZZY)
-    store.max_sequence_length = MAX_ELEMENTS
-    del store.fielddefs["service_msgs/msg/ServiceEventInfo"], store.types["service_msgs/msg/ServiceEventInfo"]
-    own: dict[str, Any] = get_types_from_msg(_EVENT_INFO, "service_msgs/msg/ServiceEventInfo")
-    for kind in own_types():
-        own.update(get_types_from_msg("\n".join(declarations(kind).values()), ros_type(kind)))
-    store.register(own)
+    Raises:
+      TypesysError: A package defines a type of ROS 2 otherwise.
+    """
+    from tailor.schemas.ros_types.cdr_store import CdrStore
+    from tailor.schemas.ros_types.common_interfaces import COMMON
+    from tailor.schemas.ros_types.plain_definitions import read_definition
+
+    own = {ros_type(kind): "\n".join(declarations(kind).values()) for kind in own_types()}
+    ours = {name: text for name, text in own.items() if name.startswith(f"{PACKAGE}/")}
+    store = CdrStore({name: read_definition(text) for name, text in (COMMON | ours).items()}, MAX_ELEMENTS)
+    if others := {name: read_definition(own[name]) for name in own.keys() - ours.keys()}:
+        store.require(others)  # a package may have named a type as ROS 2 does
+        store.register(others)
     return store
 
 
