@@ -24,7 +24,8 @@ _REFUSALS = {
 class PlanFound:
     """Result of one source; `status` as in planning.Result, or "failed" for an external planner.
 
-    `refusal` is the cause for which there is no plan; None if there is one.
+    `refusal` is the cause for which there is no plan; None if there is one. `instead` is the rest of the last plan,
+    for where a better one cannot be instantiated.
     """
 
     status: str
@@ -33,6 +34,7 @@ class PlanFound:
     generated: int
     visited: int
     refusal: Cause | None = None
+    instead: PlanFound | None = None
 
 
 def validated(

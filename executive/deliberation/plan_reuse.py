@@ -131,9 +131,10 @@ def reuse(
     prepared = preparation.suffix(plan, done, problem) if preparation is not None else None
     left = yield from prepared or planning.shortest_suffix(plan, done, context.pddl_domain, problem)
     found = (yield from preparation.better_plan(problem)) if preparation is not None else None
+    rest = PlanFound("solved", "suffix", left, 0, 0) if left is not None else None
     if found is not None and found.plan is not None and (left is None or better(found.plan, left, problem)):
-        return found
-    return PlanFound("solved", "suffix", left, 0, 0) if left is not None else None
+        return replace(found, instead=rest)
+    return rest
 
 
 def _bounded(context: Context, steps: int | None, searches: int = 1) -> planning.Settings:

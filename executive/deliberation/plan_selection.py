@@ -55,6 +55,7 @@ class PlanSelection:
         self.pattern: Pattern | None = None  # of the plan last selected, unless it has no steps
         self.sequence: ActionSequence | Failure = Failure("no plan")
         self._context, self._belief, self._source, self._number = context, belief, source, number
+        self._instead: PlanFound | None = None  # of the plan last refused
         self._found: PlanFound | None = None  # whose plan is compared with others
         self._choice: PlanChoice | _FirstInstantiable | None = None
         self._check: planning.PacedWork[str] | None = None  # of the plan chosen
@@ -67,7 +68,8 @@ class PlanSelection:
           external planner another result follows.
         """
         while self._found is None:
-            found = self._source.advance(budget)
+            found = self._instead or self._source.advance(budget)
+            self._instead = None
             if found is None or found.plan is None or not found.plan.steps:
                 return found
             if found.way == "searched":
@@ -79,6 +81,8 @@ class PlanSelection:
                 return found
             elif found.way == "external":
                 return replace(found, status="failed", plan=None, refusal=refusal)
+            else:
+                self._instead = found.instead
         return self._chosen(budget)
 
     def _choice_from(self, first: planning.Plan) -> PlanChoice | _FirstInstantiable | None:

@@ -25,9 +25,9 @@ from tests.unit.executive.deliberation.test_improvement import PLACES, PROBLEM, 
 EITHER = "(or (visited a) (visited b) (visited c))"
 
 
-def refusing(nowhere, settings=None):
+def refusing(nowhere, settings=None, places=PLACES, problem=PROBLEM):
     """The line with three places, of which some are nowhere from a belief's shift on."""
-    context = line_context(settings, PLACES, PROBLEM)
+    context = line_context(settings, places, problem)
     domain = context.domain
     value = domain.value
 
@@ -91,6 +91,15 @@ def test_the_rest_of_a_plan_that_is_refused_gives_way_to_another_plan():
     reports = [report for _, report in messages_of(published, PlanReport)]
     assert [report.way for report in reports[:2]] == ["searched", "searched"]
     assert steps(reports[1])[0][2] not in ("a", last)
+
+
+def test_a_shortcut_that_is_refused_leaves_the_rest_of_the_plan():
+    more = {**PLACES, "d": {"x": 1.2}}, PROBLEM.replace("b c)", "b c d)").replace("(place c)", "(place c) (place d)")
+    goal = "(and (visited a) (or (visited c) (and (visited b) (visited d))))"
+    states, published, _ = drive(refusing({"c": 0.0}, None, *more), 999, goal=goal)
+    assert driven(published) == ["a", "b", "d"]
+    assert [report.way for _, report in messages_of(published, PlanReport)] == ["searched", *["suffix"] * 3]
+    assert states[-1].task.result == "achieved"
 
 
 def test_an_external_planner_whose_plan_is_refused_has_failed():
