@@ -12,13 +12,15 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.support.spreading import spread
+from tests.support.workers.early_imports import import_early
+from tests.support.workers.spreading import spread
 
 pytest_plugins = ["tests.support.safety.promises"]
 # On busy cores the threads of scikit-learn spin while they wait for one another: 22 s of CPU for what takes 5.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # `make test &` in a script: what tests start would ignore Ctrl-C
     signal.signal(signal.SIGINT, signal.default_int_handler)
+os.environ.setdefault("MUJOCO_GL", "disable")  # no test draws with MuJoCo; to load OpenGL takes each simulator 0.1 s
 os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # for tests that import onnxruntime before tailor.models
 
 WAITING = {Path(__file__).with_name(name) for name in ("e2e", "faults")}  # folders of tests that start processes
@@ -61,8 +63,12 @@ def pytest_runtest_call(item):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection(session):
-    """Six thousand tests are kept to the end: garbage collections skip them, now and later."""
+    """Ten thousand tests are kept to the end: garbage collections skip them, now and later."""
     gc.disable()
+    config = session.config
+    if worker := getattr(config, "workerinput", None):
+        chosen = (config.invocation_params.dir / argument.partition("::")[0] for argument in config.args)
+        import_early(config.rootpath, chosen, int(worker["workerid"].removeprefix("gw")), worker["workercount"])
 
 
 def pytest_collection_finish(session):
