@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import make_dataclass
 
 import pytest
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
@@ -55,17 +55,16 @@ def test_a_part_of_a_new_type_may_be_any_of_jazzy():
     assert len(store.serialize_cdr(store.types["some_msgs/msg/Fixes"]([]), "some_msgs/msg/Fixes")) == 8
 
 
-@dataclass(frozen=True, slots=True)
-class Pose(Message):
-    ROS_PACKAGE = "geometry_msgs"
-
-    angle: float
+def angle(name):
+    """A message of a package, of one field."""
+    return make_dataclass(name, [("angle", float)], bases=(Message,), namespace={"ROS_PACKAGE": "geometry_msgs"})
 
 
-def test_a_package_cannot_define_a_type_of_ros_2_otherwise(monkeypatch):
+@pytest.mark.parametrize("name", ["Pose", "Polygon"])  # of them each process knows the first
+def test_a_package_cannot_define_a_type_of_ros_2_otherwise(monkeypatch, name):
     own = typesystem.own_types()
-    monkeypatch.setattr(typesystem, "own_types", lambda: (*own, Pose))
-    with pytest.raises(TypesysError, match="geometry_msgs/msg/Pose"):
+    monkeypatch.setattr(typesystem, "own_types", lambda: (*own, angle(name)))
+    with pytest.raises(TypesysError, match=f"geometry_msgs/msg/{name}"):
         typesystem.typestore.__wrapped__()
 
 
