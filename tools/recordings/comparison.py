@@ -93,14 +93,17 @@ def command_differences(a: ComparedRun, b: ComparedRun) -> dict[str, float]:
 
     Returns:
       seconds: Duration of the shorter run; first_s: time of the first difference (nan if there is none); rms, max: of
-      the difference over all axes, in their units.
+      the difference over all axes, in their units. All but the duration are nan if no axis is of both runs.
     """
     count = min(len(a.commands), len(b.commands))
     width = min(a.commands.shape[1], b.commands.shape[1])
     difference = np.abs(a.commands[:count, 1:width] - b.commands[:count, 1:width])
     different = np.flatnonzero(difference.any(axis=1))
+    seconds = float(a.commands[count - 1, 0]) if count else 0.0
+    if a.axes and b.axes and not set(a.axes) & set(b.axes):
+        return {"seconds": seconds, **dict.fromkeys(("first_s", "rms", "max"), float("nan"))}
     return {
-        "seconds": float(a.commands[count - 1, 0]) if count else 0.0,
+        "seconds": seconds,
         "first_s": float(a.commands[different[0], 0]) if different.size else float("nan"),
         "rms": float(np.sqrt(np.mean(difference**2))) if count else 0.0,
         "max": float(difference.max()) if count else 0.0,

@@ -158,6 +158,18 @@ def test_commands_of_other_axes_are_not_equal(tmp_path, capsys):
     assert "axes: v [m/s], omega [rad/s], v [m/s], omega [rad/s] against v" in capsys.readouterr().out
 
 
+def test_commands_of_two_robots_without_an_axis_in_common_are_not_compared(capsys):
+    """Metres a second were compared with radians a second: RMS 0.780, largest 2.395."""
+    files = [f"tests/data/golden/{name}.mcap" for name in ("soccer-approach", "arm-word-I")]
+    code, compared = json_of(capsys, "compare", *files)
+    assert (code, compared["equal"]) == (1, False)
+    assert compared["commands"] == {"seconds": 3.9, "first_s": None, "rms": None, "max": None}
+    assert main(["compare", *files]) == 1
+    *_, axes, commands = capsys.readouterr().out.splitlines()
+    assert axes == "axes: v [m/s], omega [rad/s] against pan [rad/s], lift [rad/s]"
+    assert commands == "commands: not compared, as no axis is of both runs"
+
+
 def test_a_run_that_ends_earlier_is_named(tmp_path, capsys):
     """The commands were "equal over" the shorter run, with exit code 1 and no reason."""
     files = []

@@ -51,7 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _comparison(a: ComparedRun, b: ComparedRun) -> dict[str, Any]:
-    apart = {name: None if math.isnan(value) else round(value, 6) for name, value in command_differences(a, b).items()}
+    found = command_differences(a, b).items()
+    apart = {name: round(value, 6) if math.isfinite(value) else None for name, value in found}
     same_commands = a.axes == b.axes and apart["first_s"] is None and len(a.commands) == len(b.commands)
     return {
         "equal": same_commands and a.result == b.result,
@@ -93,7 +94,9 @@ def _show(a: ComparedRun, b: ComparedRun, comparison: dict[str, Any]) -> None:
     apart = comparison["commands"]
     for line in _unlike(a, b):
         console.print(plain(line))
-    if apart["first_s"] is None:
+    if apart["max"] is None:
+        console.print("commands: not compared, as no axis is of both runs")
+    elif apart["first_s"] is None:
         console.print(f"commands: equal over {apart['seconds']:.1f} s")
     else:
         first, rms, largest = (apart[name] for name in ("first_s", "rms", "max"))
@@ -104,6 +107,9 @@ def _unlike(a: ComparedRun, b: ComparedRun) -> Iterator[str]:
     """What the differences of the commands leave out: other axes, and the end of the longer run."""
     if a.axes != b.axes:
         left, right = (", ".join(run.axes) or "none" for run in (a, b))
+        if not set(a.axes) & set(b.axes):
+            yield f"axes: {left} against {right}"
+            return
         yield f"axes: {left} against {right}; compared in this order, as far as both have them"
     if len(a.commands) != len(b.commands):
         yield f"number of commands: {len(a.commands)} against {len(b.commands)}; compared as far as both go"
