@@ -36,7 +36,7 @@ def other_choosers_warning(request: TrainingRequest) -> str:
             calibrating = [folder for folder, manifest in manifests.items() if manifest.get(CALIBRATES)]
             if calibrating and (reason := _reason(request, action, manifests, calibrating)):
                 found.update(dict.fromkeys(calibrating, reason))
-    except UsageError:
+    except (UsageError, OSError, SyntaxError, ValueError):  # the last two: a file of the robot's package is no Python
         return ""
     if not found:
         return ""

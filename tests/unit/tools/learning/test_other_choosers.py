@@ -66,3 +66,11 @@ def test_the_choices_of_two_generations_of_models_are_named(data: Path) -> None:
     write_manifest(data / "later" / "goToPose", {**manifest, "models_sha256": "b" * 64})
     two = request(data, "random", "runs", "later", zoo="empty")
     assert ": 2 different models chose, expected" in other_choosers_warning(two)
+
+
+def test_models_that_cannot_be_loaded_hinder_no_training(data: Path, monkeypatch) -> None:
+    def load(robot: str, zoo: str) -> str:
+        raise SyntaxError
+
+    monkeypatch.setattr(other_choosers, "models_hash", load)
+    assert other_choosers_warning(request(data, "random", "runs")) == ""
