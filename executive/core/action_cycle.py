@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
-from tailor.executive.core.effects import begun, confirmed, facts_now, with_effects
+from tailor.executive.core.effects import begun, confirmed, facts_now, planned_action, with_effects
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
@@ -16,6 +16,7 @@ from tailor.executive.interfaces.reasons import Cause, Reason, Result
 from tailor.executive.interfaces.values import Fact
 from tailor.schemas.messages import ActionFinished
 
+MAX_FRUITLESS = 5  # equal failures of a ground action before it is done, though others, e.g. its approach, succeed
 MAX_FAILURES = 10  # of whatever cause, without a success between them: controllers may name a measured value in each
 
 
@@ -105,7 +106,10 @@ def _done(context: Context, state: State, running: Running) -> tuple[State, Acti
     finished = finished_message(context, state, state.task.finished, running, ("done", None))
     # An asserted subgoal is no success of the plan: the action that it was asserted for may fail again and again
     failures = state.task.failures if running.asserted else ()
-    task = with_effects(context, replace(after_action(state.task), failures=failures), running)
+    served = planned_action(state.task.plan, running)
+    fruitless = tuple(each for each in state.task.fruitless if each[0] != served)
+    task = replace(after_action(state.task), failures=failures, fruitless=fruitless)
+    task = with_effects(context, task, running)
     state = confirmed(context, replace(state, task=task, deliberation=None, coasted=0), running)
     if state.fault is not None:
         state = replace(state, command=at_rest(context.domain.axes, state.command))
@@ -120,10 +124,24 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
     finished = finished_message(context, state, state.task.finished, running, ("failed", cause))
     failure = (running.action.name, Cause(cause.reason) if cause.reason is Reason.ACTION_TIMEOUT else cause)
     again = state.task.failures.count(failure) + 1 >= context.settings.replan_failures
-    state = _with_failure(state, failure, Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}"), again)
+    state, fruitless = _with_fruitless(state, running, failure[1])
+    fault = Cause(Reason.REPEATED_FAILURE, f"{running.action.name}: {cause}")
+    state = _with_failure(state, failure, fault, again or fruitless)
     task = replace(after_action(state.task), plan=None, done=frozenset())
     zero, coasted = at_rest(context.domain.axes, state.command), context.settings.coast_ticks
     return replace(state, task=task, deliberation=None, command=zero, coasted=coasted), finished
+
+
+def _with_fruitless(state: State, running: Running, cause: Cause) -> tuple[State, bool]:
+    """The failure noted with the ground action of the plan, and whether that has failed too often before it is done."""
+    task = state.task
+    action = task.plan.action_of(running.step) if task.plan is not None else None
+    if action is None:
+        return state, False
+    fruitless = (*task.fruitless, (action, cause))
+    often = sum(each == action for each, _ in fruitless) >= MAX_FAILURES
+    state = replace(state, task=replace(task, fruitless=fruitless))
+    return state, often or fruitless.count((action, cause)) >= MAX_FRUITLESS
 
 
 def _with_failure(state: State, failure: tuple[str, Cause], fault: Cause, at_once: bool = False) -> State:

@@ -69,6 +69,7 @@ class Task:
     done: frozenset[int] = frozenset()  # steps of `plan` that have been executed
     finished: int = 0  # actions ended since the goal was set
     failures: tuple[tuple[str, Cause], ...] = ()  # action and cause, since a step of the plan succeeded
+    fruitless: tuple[tuple[Fact, Cause], ...] = ()  # failures of ground actions of the plan, since each was done
     lost: tuple[Literal, ...] = ()  # for want of which plans were given up since the goal was set
     unconfirmed: tuple[Fact, ...] = ()  # ground actions done without observed effects, since each was with them
     approached: tuple[Fact, ...] = ()  # ground actions whose asserted subgoals were reached, since each was done

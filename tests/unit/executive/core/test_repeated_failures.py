@@ -7,18 +7,19 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tailor.executive.core.action_cycle import MAX_FAILURES
+from tailor.executive.core.action_cycle import MAX_FAILURES, MAX_FRUITLESS
 from tailor.executive.core.effects import MAX_SUBGOALS, MAX_UNCONFIRMED
 from tailor.executive.core.modes import Mode
-from tailor.executive.deliberation.context import MAX_GOAL_BYTES
-from tailor.executive.interfaces.action import Control
+from tailor.executive.deliberation.context import MAX_GOAL_BYTES, Settings, make_context
+from tailor.executive.interfaces.action import Control, Parameter
+from tailor.executive.interfaces.domain import Scenario
 from tailor.executive.interfaces.models import Models
 from tailor.executive.interfaces.reasons import Cause, Reason
 from tailor.schemas.codec import decode, encode
 from tailor.schemas.errors import Rejected
 from tailor.schemas.messages import ActionFinished
 from tailor.schemas.topics import TOPICS
-from tests.support.toy_domain import SLIDE, LineDomain, inputs, line_context, slide
+from tests.support.toy_domain import SENDER, SLIDE, LineDomain, LineModel, inputs, line_context, slide
 from tests.unit.executive.core.test_core import TICK, drive, messages
 
 
@@ -81,6 +82,75 @@ def test_a_robot_that_slips_at_an_obstacle_is_not_found_carried_for_ever():
     state = run[-1][0]
     assert (state.mode, state.command) == (Mode.FAULT, (0.0,))
     assert state.cause == Cause(Reason.REPEATED_FAILURE, "slide: robot carried")
+
+
+class Losing(LineDomain):
+    """Slides to a place well, and is back at home each time that it has failed to lift there, `fails` times."""
+
+    pddl = """
+    (define (domain line) (:requirements :strips)
+      (:predicates (at ?p) (visited ?p) (place ?p) (lifted ?p))
+      (:action slide :parameters (?from ?to)
+        :precondition (and (at ?from) (place ?to))
+        :effect (and (not (at ?from)) (at ?to) (visited ?to)))
+      (:action lift :parameters (?p) :precondition (at ?p) :effect (lifted ?p)))
+    """
+    executables = {"slide": "slide", "lift": "lift"}
+
+    def __init__(self, fails):
+        self.left = fails
+        lift = dataclasses.replace(
+            SLIDE, name="lift", parameters=(Parameter("x", 0, "x", "m", -10, 100),), controller=self.lift
+        )
+        self.actions = {"slide": SLIDE, "lift": lift}
+
+    def lift(self, state, now_ns, belief, arguments):
+        if not self.left:
+            return Control(state, (0.0,), "done")
+        if belief.x > 0.1:
+            return Control(state, (-0.5,))
+        self.left -= 1
+        return Control(state, (0.0,), "failed", "slipped")
+
+    def anchor(self, belief, scenario, remembered):
+        at = min(scenario.places, key=lambda place: abs(scenario.places[place]["x"] - belief.x))
+        return frozenset({*(fact for fact in remembered if fact[0] != "at"), ("at", at)})
+
+
+class Second:
+    """Lifting takes a second."""
+
+    card = {"sha256": "toy"}
+
+    def predict(self, arguments):
+        return np.ones(len(arguments)), np.zeros(len(arguments))
+
+
+def lifting(fails, goal):
+    problem = """(define (problem two-places) (:domain line) (:objects home a b)
+      (:init (at home) (place a) (place b)) (:goal (lifted a)))"""
+    places, domain = {"home": {"x": 0.0}, "a": {"x": 0.5}, "b": {"x": 2.0}}, Losing(fails)
+    models = Models({"slide/duration": LineModel(), "lift/duration": Second()}, {})
+    domain.actions["lift"] = dataclasses.replace(domain.actions["lift"], duration_model="lift/duration")
+    context = make_context(domain, Scenario("lift", problem, places), models, Settings(), SENDER)
+    run = list(drive(context, goal=goal, ticks=600, checks=60))
+    return [(f.action, f.outcome) for f in messages(run, ActionFinished)], run[-1][0]
+
+
+@pytest.mark.promise("P30")
+def test_an_action_is_not_approached_for_ever_that_fails_after_each_approach():
+    """Each approach counted as a success: a ball that was taken away was approached and sought for 75 s."""
+    ends, state = lifting(10**6, "(lifted a)")
+    assert ends == [("slide", "done"), ("lift", "failed")] * MAX_FRUITLESS
+    assert (state.mode, state.command) == (Mode.FAULT, (0.0,))
+    assert state.cause == Cause(Reason.REPEATED_FAILURE, "lift: controller failed: slipped")
+
+
+def test_an_action_that_is_done_in_the_end_may_fail_as_often_again():
+    ends, state = lifting(MAX_FRUITLESS - 1, "(lifted a)")
+    assert ends[-1] == ("lift", "done")
+    assert state.task.result == "achieved"
+    assert state.task.fruitless == ()
 
 
 @pytest.mark.parametrize("text", ["x" * 20_000, "\u20ac" * 20_000, "a path \udcff"])
