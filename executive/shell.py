@@ -13,6 +13,7 @@ from tailor.executive.core.step import at_once_at_rest, control, deliberate
 from tailor.executive.deliberation.context import PERIOD_NS, Context, check_goal, drops_goal
 from tailor.executive.interfaces.outlet import outlets_of
 from tailor.executive.late_goals import LateGoals
+from tailor.executive.repeated_goals import RepeatedGoals, is_pursued
 from tailor.runtime import realtime
 from tailor.runtime.budget import ClockBudget
 from tailor.runtime.bus.ros_action.server import GoalAction
@@ -64,7 +65,7 @@ class Shell:
         external = context.settings.external
         self._planner = ExternalPlanner(external.command, external.limit_s)
         self._state = initial_state(context)
-        self._late = LateGoals()
+        self._late, self._repeated = LateGoals(), RepeatedGoals()
 
     @property
     def refused_fields(self) -> str:
@@ -142,23 +143,15 @@ class Shell:
             request.refuse(str(refusal))
             return first
         if not drops_goal(self._context, goal):
-            if late:
-                request.refuse(late)
+            if refused := late or self._repeated.refusal(goal, self._clock.now_ns(), self._state):
+                request.refuse(refused)
                 return first
             request.accept()
-            return first if self._pursues(goal) else goal
+            return first if is_pursued(goal, self._state) else goal
         task = self._state.task
         dropped = first or (task.goal if task.active else "")
         request.accept(f"cancelled: {dropped}" if dropped else "no goal is open")
         return goal if dropped else ""
-
-    def _pursues(self, goal: str) -> bool:
-        """Whether a goal is the open one: sent again, as some ROS nodes do all the time, it must not begin anew.
-
-        A goal that has ended, or that ends in a fault, does.
-        """
-        state = self._state
-        return state.task.active and state.fault is None and state.task.goal == goal
 
     def _late_goals(self, period: Period, received: tuple[Sample, ...], request: ServiceRequest | None) -> str:
         """Why this request is too old; called in every tick, after the look at goals.

@@ -14,6 +14,7 @@ from tests.unit.executive.test_shell import Clock, Goals
 
 GOAL = "(and (visited a) (visited b))"
 END = 40  # ticks; the goal takes fewer
+TOO_FAR = {"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}}  # for the controller, which gives up
 
 
 class MovingGoals(Goals):
@@ -36,11 +37,16 @@ class ActionClient(ClientSession, MovingGoals):
         MovingGoals.__init__(self, clock, {})
 
 
-def driven(goals, context=None):
-    """Actions that ended, goals that were begun, and the last state, where goals are requested by tick."""
+def run(goals, context=None):
+    """The bus and the last state, where goals are requested by tick."""
     clock = Clock()
     session = MovingGoals(clock, {clock.ns + tick * PERIOD_NS: goal for tick, goal in goals.items()})
-    state = Shell(context or line_context(), session, clock, {}).run("", lambda state: state.tick == END)
+    return session, Shell(context or line_context(), session, clock, {}).run("", lambda state: state.tick == END)
+
+
+def driven(goals, context=None):
+    """Actions that ended, goals that were begun, and the last state, where all goals are accepted."""
+    session, state = run(goals, context)
     assert session.answers == [(True, ACCEPTED)] * len(goals)
     ends = [each.outcome for each in session.published if isinstance(each, ActionFinished)]
     return ends, [each.goal for each in session.published if isinstance(each, TickReport) and each.goal], state
@@ -59,10 +65,34 @@ def test_a_goal_that_has_ended_begins_anew():
 
 
 def test_a_goal_that_has_ended_in_a_fault_begins_anew():
-    too_far = {"home": {"x": 0.0}, "a": {"x": 95.0}, "b": {"x": 1.0}}
-    once, again = (driven(goals, line_context(places=too_far)) for goals in ({3: GOAL}, {3: GOAL, 30: GOAL}))
+    once, again = (driven(goals, line_context(places=TOO_FAR)) for goals in ({3: GOAL}, {3: GOAL, 30: GOAL}))
     assert once[2].mode is Mode.FAULT
     assert (len(again[0]), again[1]) == (2 * len(once[0]), [GOAL] * 2)
+
+
+@pytest.mark.promise("P30")
+def test_a_goal_that_is_sent_all_the_time_ends_no_fault():
+    """A fault, which waits for people, was over in the next tick, and so for ever."""
+    session, state = run(dict.fromkeys(range(3, END), GOAL), line_context(places=TOO_FAR))
+    assert state.mode is Mode.FAULT
+    assert [each.outcome for each in session.published if isinstance(each, ActionFinished)] == ["failed"] * 2
+    fault = "repeated failure: slide: controller failed: too far"
+    assert session.answers[-1] == (
+        False,
+        f"this goal ended in a fault ({fault}), and is sent all the time: end its sender, or send it again after 1 s",
+    )
+
+
+@pytest.mark.promise("P41")
+@pytest.mark.parametrize(("pause", "moves"), [(0, False), (8, False), (11, True)])
+def test_a_goal_that_is_sent_all_the_time_is_not_pursued_after_people_dropped_it(pause, moves):
+    goals = dict.fromkeys(range(3, 8), GOAL) | {8: "(and)"} | dict.fromkeys(range(8 + max(1, pause), END), GOAL)
+    session, state = run(goals)
+    ends = [each.outcome for each in session.published if isinstance(each, ActionFinished)]
+    assert ends == (["aborted", "done", "done"] if moves else ["aborted"])
+    if not moves:
+        assert (state.task.result, state.command) == ("cancelled", (0.0,))
+        assert session.answers[-1][1].startswith("this goal was cancelled, and is sent all the time: end its sender")
 
 
 def test_another_goal_replaces_the_open_one():
