@@ -10,6 +10,7 @@ from contextlib import ExitStack
 from tailor.executive import domains
 from tailor.schemas.errors import UsageError
 from tailor.schemas.messages import EStop
+from tailor.schemas.services import DROP
 from tailor.tools.soak.faults.scene import Scene
 from tailor.tools.soak.systems.sessions import open_people
 
@@ -88,5 +89,6 @@ def _call(scene: Scene, service: str, argument: dict[str, object] | dict[str, fl
 
 
 def new_goal(scene: Scene) -> None:
-    """The goal is set anew while the robot pursues it."""
+    """The goal is dropped and set anew while the robot pursues it: the same one that is set again changes nothing."""
+    scene.system.call("exec/goal", DROP)
     scene.people.set_goal()
