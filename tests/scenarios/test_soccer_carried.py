@@ -46,8 +46,8 @@ def test_a_robot_carried_to_the_target_fetches_the_ball_that_it_had_before_it(se
     assert (episode.result, off_m < 0.4) == ("achieved", True)
 
 
-@pytest.mark.parametrize("goal", ["(ball pos3)", "(atball pos3)"])
-def test_a_goal_that_names_only_the_place_of_the_ball_is_reached_with_one_dribble(goal):
+@pytest.mark.parametrize("goal", ["(ball pos3)", "(atball pos3)", "(robot pos3)"])
+def test_a_goal_that_names_only_the_place_of_ball_or_robot_is_reached_with_one_dribble(goal):
     off_m, episode = play(700001, goal=goal, final="")
     assert (episode.result, off_m < 0.4) == ("achieved", True)
     assert [finished.action for finished in episode.finished] == ["approachBall", "dribbleBall"]

@@ -39,7 +39,7 @@ def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
     name, holding = fact[0], fact in query.holds
     if name == "robot" and holding:
         return _robot(query.belief)
-    if name in ("ball", "atball") and not holding:
+    if name in ("ball", "atball", "robot") and not holding:
         return _target(query)
     if name == "ball":
         return _ball(balls.with_ball_of(query.belief, query.label, query.scenario.settings))
@@ -53,7 +53,7 @@ def _exact_values(query: LabelQuery, fact: Fact) -> Mapping[str, float]:
 
 
 def _target(query: LabelQuery) -> dict[str, float]:
-    """Where a ball counts as being at the target, whether the goal names the target's heading and speed or not."""
+    """Where ball and robot count as being at the target, whether the goal names its heading and speed or not."""
     if query.label != query.scenario.settings.get("target_label"):
         return {}
     place = query.scenario.places[query.label]

@@ -1,6 +1,6 @@
 """Goals of soccer that pages, help and the ROS 2 service give as examples are those of scenarios.
 
-A goal such as `(robot pos3)` leaves it open where `pos3` is: the robot that gets it dribbles on and on.
+One that names less leaves more of it open than its author may have meant.
 """
 
 import re
