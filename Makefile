@@ -33,9 +33,9 @@ demo: $(DEMO)
 demo-arm: $(DEMO)
 	$(BIN)/tailor letters
 
-# Four workers even on two cores: two of them run robots and wait most of the time. Each reads what another compiled.
+# Four workers even on two cores: two of them run robots and wait most of the time.
 test: setup
-	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -m 'not slow' -n 4 --dist loadgroup --durations=30 --durations-min=3
+	$(BIN)/python -m pytest -m 'not slow' -n 4 --dist loadgroup --durations=30 --durations-min=3
 
 test-all: setup
 	$(BIN)/python -m pytest -n 4 --dist loadgroup

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.support.workers.early_imports import import_early
-from tests.support.workers.spreading import spread
+from tests.support.spreading import spread
 
 pytest_plugins = ["tests.support.safety.promises"]
 # On busy cores the threads of scikit-learn spin while they wait for one another: 22 s of CPU for what takes 5.
@@ -65,10 +64,6 @@ def pytest_runtest_call(item):
 def pytest_collection(session):
     """Ten thousand tests are kept to the end: garbage collections skip them, now and later."""
     gc.disable()
-    config = session.config
-    if worker := getattr(config, "workerinput", None):
-        chosen = (config.invocation_params.dir / argument.partition("::")[0] for argument in config.args)
-        import_early(config.rootpath, chosen, int(worker["workerid"].removeprefix("gw")), worker["workercount"])
 
 
 def pytest_collection_finish(session):

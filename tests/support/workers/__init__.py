@@ -1,1 +1,0 @@
-"""How several workers share the tests: those that wait, and what they compile."""
