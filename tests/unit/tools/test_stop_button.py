@@ -161,7 +161,7 @@ def test_who_presses_while_no_bus_answers_is_told_at_once_to_use_another_stop(mo
     monkeypatch.setattr(estop, "open_bus", unreachable)
     assert main(["estop"]) == 2
     assert read == ["NOT STOPPED: use the e-stop of the robot itself; no bus answers so far"]
-    error = "tailor estop: NOT STOPPED: use the e-stop of the robot itself; bus endpoint tcp/x: no router responds\n"
+    error = "tailor estop: bus endpoint tcp/x: no router responds; NOT STOPPED: use the e-stop of the robot itself\n"
     assert capsys.readouterr().err == error
 
 

@@ -64,7 +64,7 @@ def _bus(arguments: argparse.Namespace) -> Iterator[Session]:
         try:
             session = stack.enter_context(open_bus(arguments, "people"))
         except UsageError as error:
-            raise type(error)(f"{NOT_STOPPED}; {error}") from error
+            raise type(error)(f"{error}; {NOT_STOPPED}") from error
         finally:
             told.cancel()
         yield session
