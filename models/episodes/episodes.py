@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tailor.models.episodes.distinct import check_distinct
 from tailor.models.episodes.manifest import read_manifest
-from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, parts_of, read_part
+from tailor.models.episodes.part_reader import IN_CONTEXT, WORK, parts_of, parts_sha256, read_part
 from tailor.models.episodes.sources import CALIBRATES, PROBE, SELECTED, end_of, probe_of, source_files, source_of
 from tailor.models.episodes.whole_files import write_whole
 from tailor.schemas.errors import UsageError
@@ -151,15 +151,13 @@ def read_data_set(folder: Path) -> DataSet:
     manifest = read_manifest(folder)
     names = [argument["name"] for argument in manifest["arguments"]]
     episodes: list[Episode] = []
-    digest = hashlib.sha256()
     for path in parts_of(folder):
         episodes.extend(_episodes(read_part(path, names), names, manifest))
-        digest.update(path.read_bytes())
     numbers = [episode.number for episode in episodes]
     if len(set(numbers)) < len(numbers):
         repeated = next(number for number, count in Counter(numbers).items() if count > 1)
         raise UsageError(f"{folder}: holds episode {repeated} twice, expected once: training and test would share it")
-    return DataSet(manifest, tuple(episodes), digest.hexdigest())
+    return DataSet(manifest, tuple(episodes), parts_sha256(folder))
 
 
 def merge(sets: Sequence[DataSet]) -> DataSet:

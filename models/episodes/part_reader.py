@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,6 +42,14 @@ def parts_of(folder: Path) -> list[Path]:
         if not path.is_file():
             raise UsageError(f"{path}: is no file, expected a part of a data set")
     return found
+
+
+def parts_sha256(folder: Path) -> str:
+    """SHA-256 of all parts of a data set, as cards name it; a UsageError as of `parts_of`."""
+    digest = hashlib.sha256()
+    for path in parts_of(folder):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def read_part(path: Path, names: Sequence[str]) -> pa.Table:

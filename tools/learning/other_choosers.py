@@ -5,14 +5,13 @@ The models that chose are those in the zoo, or were: then their cards name the c
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tailor.models.cards.card import Card, read_card
 from tailor.models.episodes.manifest import read_manifest
-from tailor.models.episodes.part_reader import parts_of
+from tailor.models.episodes.part_reader import parts_sha256
 from tailor.models.episodes.sources import CALIBRATES
 from tailor.schemas.errors import UsageError
 from tailor.tools.cli.word_lists import abbreviated
@@ -61,7 +60,7 @@ def _reason(
     if (learned := _learned(card)) and learned != _sha256_of_learned(manifests):
         return f"models of other episodes chose (those of {place.parent})"
     known = {source.get("sha256") for source in card["episodes"].get("sources", ())}
-    if known >= set(map(_sha256, calibrating)) or models_hash(request.robot, str(request.zoo)) in choosers:
+    if known >= set(map(parts_sha256, calibrating)) or models_hash(request.robot, str(request.zoo)) in choosers:
         return ""
     return f"other models chose than those in {request.zoo / request.robot}"
 
@@ -74,12 +73,4 @@ def _learned(card: Card) -> list[str]:
 def _sha256_of_learned(manifests: Mapping[Path, Mapping[str, Any]]) -> list[str]:
     """The same of the model that is trained; from data sets of several objects none is learned beside others."""
     alone: Sequence[Path] = [folder for folder, each in manifests.items() if not each.get("objects")] or [*manifests]
-    return [_sha256(folder) for folder in alone if not manifests[folder].get(CALIBRATES)]
-
-
-def _sha256(folder: Path) -> str:
-    """SHA-256 of all parts of a data set, as in cards."""
-    digest = hashlib.sha256()
-    for part in parts_of(folder):
-        digest.update(part.read_bytes())
-    return digest.hexdigest()
+    return [parts_sha256(folder) for folder in alone if not manifests[folder].get(CALIBRATES)]
