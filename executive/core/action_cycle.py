@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.command_guard import whole_command
-from tailor.executive.core.effects import begun, confirmed, facts_now, planned_action, with_effects
+from tailor.executive.core.effects import begun, confirmed, facts_now, planned_action, served_action, with_effects
 from tailor.executive.core.execution import Running, control_step, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.state import Inputs, State, Task, undecided
@@ -135,7 +135,7 @@ def _failed(context: Context, state: State, running: Running, cause: Cause) -> t
 def _with_fruitless(state: State, running: Running, cause: Cause) -> tuple[State, bool]:
     """The failure noted with the ground action of the plan, and whether that has failed too often before it is done."""
     task = state.task
-    action = task.plan.action_of(running.step) if task.plan is not None else None
+    action = served_action(task.plan, running)
     if action is None:
         return state, False
     fruitless = (*task.fruitless, (action, cause))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from tailor.executive import planning
 from tailor.executive.core.action_cycle import after_action
-from tailor.executive.core.effects import begun, facts_now
+from tailor.executive.core.effects import begun, facts_now, served_action
 from tailor.executive.core.execution import Running, first_action
 from tailor.executive.core.modes import Mode
 from tailor.executive.core.perception import slow_inputs
@@ -67,7 +67,7 @@ def _lost_support(context: Context, state: State, running: Running) -> planning.
     SAS+, Bäckström and Nebel 1995). Predicates that the running action changes are in flux until it ends.
     """
     task = state.task
-    action = task.plan.action_of(running.step) if task.plan is not None else None
+    action = served_action(task.plan, running)
     if task.plan is None or action is None:
         return None
     facts = facts_now(context, state)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -77,12 +78,16 @@ def _without_steps(context: Context, state: State, deliberation: Deliberation) -
     That was perhaps seconds ago, and the robot may have left since what is only remembered.
     """
     links, task = deliberation.plan.links if deliberation.plan is not None else (), state.task
-    if all(link.literal.holds_in(facts_for_certain(context, state)) for link in links):
+    if _hold(links, facts_for_certain(context, state)):
         finished = task.finished + (task.running is not None)
         task = replace(task, active=False, result=Result.ACHIEVED, running=None, decision=None, finished=finished)
         return replace(state, task=task)
-    without_left = all(link.literal.holds_in(facts_now(context, state)) for link in links)
+    without_left = _hold(links, facts_now(context, state))
     return replace(state, task=replace(task, without_left=without_left), deliberation=None)
+
+
+def _hold(links: Iterable[planning.Link], facts: frozenset[Fact]) -> bool:
+    return all(link.literal.holds_in(facts) for link in links)
 
 
 def _with_deliberation(context: Context, state: State) -> State:

@@ -21,7 +21,7 @@ def begun(context: Context, task: Task, plan: planning.Plan, running: Running) -
 
     They stay remembered, as what comes after may need them: a stroke goes on from the waypoint that the arm has left.
     """
-    action = plan.action_of(running.step)
+    action = served_action(plan, running)
     taken = frozenset[Fact]() if action is None else task.facts - _applied(context, task.facts, action)
     return replace(task, running=running, left=task.left | taken)
 
@@ -81,7 +81,7 @@ def confirmed(context: Context, state: State, running: Running) -> State:
 def _reached(state: State, running: Running) -> State:
     """Note an asserted subgoal that was reached; a fault if the action that it was asserted for never follows."""
     task = state.task
-    action = task.plan.action_of(running.step) if task.plan is not None else None
+    action = served_action(task.plan, running)
     if action is None:
         return state
     state = replace(state, task=replace(task, approached=(*task.approached, action)))
@@ -96,7 +96,12 @@ def _repeated(state: State, detail: str) -> State:
 
 def planned_action(plan: planning.Plan | None, running: Running) -> Fact | None:
     """The ground action of the plan that the running action serves; None if it leads to an asserted subgoal."""
-    return plan.action_of(running.step) if plan is not None and not running.asserted else None
+    return None if running.asserted else served_action(plan, running)
+
+
+def served_action(plan: planning.Plan | None, running: Running) -> Fact | None:
+    """The same, also where the running action leads to a subgoal that was asserted before it."""
+    return plan.action_of(running.step) if plan is not None else None
 
 
 def missing_effects(context: Context, facts: frozenset[Fact], action: Fact) -> frozenset[Fact]:
