@@ -81,9 +81,10 @@ class RunComparison:
             if (following := outputs.following) is not None
         ]
         reported = [each for each in left if each[0] <= self._reports[-1].tick]
-        for tick, key, number in sorted(reported)[:1]:
-            return Difference(tick, key, "message", f"number {number}", NONE)
-        return None
+        if not reported:
+            return None
+        tick, key, number = min(reported)
+        return Difference(tick, key, "message", f"number {number}", NONE)
 
     def _tick_of(self, message: Message) -> int:
         """Number of the tick that a message was published in; one beyond the last one without a report."""

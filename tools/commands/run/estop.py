@@ -22,7 +22,7 @@ from tailor.tools.operator.stop_button import StopButton, all_stopped, summary
 
 LOST = "NOT CONFIRMED: the bus was lost, and nobody knows what heard the e-stop; use the e-stop of the robot itself"
 NOT_STOPPED = "NOT STOPPED: use the e-stop of the robot itself"
-PATIENCE_S = 0.7  # for a bus; then people are told. A bus that starts just now is tried for longer
+PATIENCE_S = 0.7  # for a bus; then people read what to do. A bus that starts just now is tried for longer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -55,18 +55,18 @@ def run(arguments: argparse.Namespace) -> int:
 
 @contextmanager
 def _bus(arguments: argparse.Namespace) -> Iterator[Session]:
-    """The session; who waits for it is told what to do meanwhile, and what to do instead if there is none."""
+    """The session; who waits for it reads what to do meanwhile, and what to do instead if there is none."""
     late = f"{NOT_STOPPED}; no bus answers so far"
-    told = Timer(PATIENCE_S, lambda: print(late, file=sys.stderr, flush=True))
-    told.daemon = True
+    notice = Timer(PATIENCE_S, lambda: print(late, file=sys.stderr, flush=True))
+    notice.daemon = True
     with ExitStack() as stack:
-        told.start()
+        notice.start()
         try:
             session = stack.enter_context(open_bus(arguments, "people"))
         except UsageError as error:
             raise type(error)(f"{error}; {NOT_STOPPED}") from error
         finally:
-            told.cancel()
+            notice.cancel()
         yield session
 
 
