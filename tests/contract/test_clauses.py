@@ -18,7 +18,7 @@ from tailor.schemas.installed import models_folder
 from tailor.schemas.packages.scene import sphere
 from tailor.tools.contract import package_clauses
 from tailor.tools.contract.subject import Subject
-from tailor.tools.contract.suite import CLAUSES, cases
+from tailor.tools.contract.suite import CLAUSES, cases, ordered_clauses
 from tailor.tools.contract.units import is_unit
 from tailor.tools.new_robot.templates import kinds
 from tests.support.robots.known_robot import known_robot
@@ -49,6 +49,14 @@ def test_a_new_robot_keeps_every_clause(kind, tmp_path):
         subject = Subject("trolley", runs=2)
         assert broken(subject) == set()
         assert {clause.name for clause, _ in cases(subject)} == set(CLAUSES)
+
+
+def test_clauses_come_in_one_order_whichever_of_their_modules_was_imported_first(monkeypatch):
+    last_module_first = dict(sorted(CLAUSES.items(), key=lambda item: item[1].check.__module__, reverse=True))
+    before = ordered_clauses()
+    monkeypatch.setattr("tailor.tools.contract.suite.CLAUSES", last_module_first)
+    assert ordered_clauses() == before
+    assert before[0].name == "holds_together"
 
 
 @pytest.mark.parametrize("missing", ["body", "sampler"])
@@ -346,7 +354,7 @@ def test_symbols_of_si_and_compounds_are_units(unit):
 OF_SEVERAL_OUTLETS = ("outlets_are_driven",)  # test_outlet_clauses.py
 
 
-@pytest.mark.parametrize("name", [name for name in CLAUSES if name not in OF_SEVERAL_OUTLETS])
+@pytest.mark.parametrize("name", [name for name in sorted(CLAUSES) if name not in OF_SEVERAL_OUTLETS])
 def test_a_robot_that_breaks_a_clause_breaks_it_alone(name, subject):
     BAD[name](subject)
     assert broken(subject) == {name}

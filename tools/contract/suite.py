@@ -12,8 +12,8 @@ from tailor.tools.contract import action_clauses, body_clauses, package_clauses,
 from tailor.tools.contract.clause import CLAUSES, Clause
 from tailor.tools.contract.subject import Subject
 
-__all__ = ["CLAUSES", "cases", "pytest_generate_tests", "test_contract"]
-SOURCES = (package_clauses, action_clauses, scenario_clauses, body_clauses, scene_clauses)  # their import fills CLAUSES
+__all__ = ["CLAUSES", "cases", "ordered_clauses", "pytest_generate_tests", "test_contract"]
+SOURCES = (package_clauses, action_clauses, scenario_clauses, body_clauses, scene_clauses)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -40,9 +40,15 @@ def cases(subject: Subject) -> Iterator[tuple[Clause, str]]:
     """Clauses with the actions or scenarios for which they are checked; without those whose part the package lacks."""
     by_scope: dict[str, Iterable[str]] = {"package": ("",), "scenario": subject.scenarios}
     by_scope["action"] = subject.domain.actions
-    for clause in CLAUSES.values():
+    for clause in ordered_clauses():
         if not clause.needs or has(subject, clause.needs):
             yield from ((clause, case) for case in by_scope[clause.scope])
+
+
+def ordered_clauses() -> list[Clause]:
+    """All clauses, equally in each process, as pytest-xdist requires: the modules may be imported in another order."""
+    order = [source.__name__ for source in SOURCES]
+    return sorted(CLAUSES.values(), key=lambda clause: order.index(clause.check.__module__))
 
 
 def has(subject: Subject, part: str) -> bool:

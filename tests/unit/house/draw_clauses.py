@@ -1,6 +1,6 @@
 """Draws the clauses of the contract into docs/robots/contract.md."""
 
-from tailor.tools.contract.suite import CLAUSES
+from tailor.tools.contract.suite import ordered_clauses
 from tests.unit.house.arrows import ROOT
 
 PAGE = ROOT / "docs" / "robots" / "contract.md"
@@ -9,8 +9,8 @@ FOR = {"package": "package", "action": "each action", "scenario": "each scenario
 
 
 def drawn(page: str) -> str:
-    """The page with today's clauses, in the same order whichever of their modules was imported first."""
-    ordered = sorted(CLAUSES.values(), key=lambda each: (list(FOR).index(each.scope), each.check.__module__))
+    """The page with today's clauses."""
+    ordered = sorted(ordered_clauses(), key=lambda each: list(FOR).index(each.scope))
     rows = [f"| `{each.name}` | {FOR[each.scope]} | {each.text} | {each.needs} |" for each in ordered]
     table = "\n".join(["| clause | for | a package keeps to it if | needs |", "|---|---|---|---|", *rows])
     head, begin, _ = page.partition(BEGIN)
