@@ -78,7 +78,7 @@ def finished_message(
         reason=str(cause.reason) if cause is not None else "",
         predicted_s=running.predicted_s,
         actual_s=running.elapsed_s(state.now_ns),
-        detail=cause.told if cause is not None else running.surprise(state.now_ns),
+        detail=cause.bus_detail if cause is not None else running.surprise(state.now_ns),
     )
 
 

@@ -136,4 +136,4 @@ def status_message(context: Context, state: State) -> m.ExecStatus:
 
 
 def _texts(cause: Cause | None) -> tuple[str, str]:
-    return (str(cause.reason), cause.told) if cause is not None else ("", "")
+    return (str(cause.reason), cause.bus_detail) if cause is not None else ("", "")

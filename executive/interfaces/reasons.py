@@ -139,6 +139,6 @@ class Cause:
         return reason_text(self.reason, self.detail)
 
     @property
-    def told(self) -> str:
+    def bus_detail(self) -> str:
         """The detail as messages carry it: text on the bus, short enough for every topic; packages write some."""
         return self.detail.encode(errors="backslashreplace")[:MAX_DETAIL_BYTES].decode(errors="ignore")

@@ -62,7 +62,7 @@ def prime() -> None:
     header, info = b"\0\1\0\0", GoalInfo(ANY_GOAL, 0)
     sent_goal(header + ANY_GOAL + b"\1\0\0\0\0")  # the length of an empty text, and its end
     goals_to_cancel(header + ANY_GOAL + bytes(8))
-    asked_result(header + ANY_GOAL)
+    requested_result(header + ANY_GOAL)
     sent_response(True, 0)
     cancel_response(CancelCode.NONE, [info])
     result_response(GoalState.UNKNOWN, GoalResult(""))
@@ -98,7 +98,7 @@ def cancel_response(code: CancelCode, goals: Iterable[GoalInfo]) -> bytes:
     return to_bytes(ros_class(f"{CANCEL}_Response")(code.value, [_info(goal) for goal in goals]), f"{CANCEL}_Response")
 
 
-def asked_result(data: bytes) -> bytes | Rejected:
+def requested_result(data: bytes) -> bytes | Rejected:
     """Id of the goal whose result is requested."""
     ros = read_request(data, f"{ACTION}_GetResult_Request")
     return ros if isinstance(ros, Rejected) else _id(ros.goal_id)

@@ -53,7 +53,7 @@ class Calls:
         try:
             call()
         except BaseException as error:  # also SystemExit and asyncio's CancelledError: a writer must not end unseen
-            return fault_text(f"{name}: {type(error).__name__}: {_said_by(error)}")
+            return fault_text(f"{name}: {type(error).__name__}: {_text_of(error)}")
         finally:
             self._begun_ns.pop(name, None)
         return ""
@@ -67,7 +67,7 @@ class Calls:
         return ""
 
 
-def _said_by(error: BaseException) -> str:
+def _text_of(error: BaseException) -> str:
     """Text of an exception; a class of a device's library may fail to make one, and must not end a thread by it."""
     try:
         return str(error)

@@ -76,7 +76,7 @@ class Exchange:
         self._heard += not before
 
     @property
-    def told(self) -> DriverState | None:
+    def reported(self) -> DriverState | None:
         """The newest state for people; of several drivers that are to be disarmed, that of one which is not."""
         if self._request.arm:
             return self.state
@@ -133,7 +133,7 @@ class Exchange:
 
         The first state after the request may have been under way before it. Then it shows what was there before.
         """
-        if self.state is None or self._heard == 0 or not self._is_wanted(self.told):
+        if self.state is None or self._heard == 0 or not self._is_wanted(self.reported):
             return False
         before = self._before
         changed = before is not None and before.epoch == self.state.epoch and not self._is_wanted(before)

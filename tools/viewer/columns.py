@@ -73,7 +73,7 @@ def _add(stretches: list[_Stretch], event: Event) -> None:
 def _block(kind: str, stretch: _Stretch) -> dict[str, Any]:
     at = np.array(stretch.at_s)
     values = np.array(stretch.values).reshape(len(at), len(stretch.values) // len(at))
-    kept = slice(None) if kind == COUNTED else _told_apart(values)
+    kept = slice(None) if kind == COUNTED else _distinguished(values)
     return {
         "kind": kind,
         "length": len(at[kept]),
@@ -83,7 +83,7 @@ def _block(kind: str, stretch: _Stretch) -> dict[str, Any]:
     }
 
 
-def _told_apart(values: Any) -> Any:
+def _distinguished(values: Any) -> Any:
     """Which samples differ from the one before or the one after."""
     differs = np.ones(len(values) + 1, dtype=bool)
     differs[1:-1] = ((values[1:] != values[:-1]) & ~(np.isnan(values[1:]) & np.isnan(values[:-1]))).any(axis=1)

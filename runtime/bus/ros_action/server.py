@@ -48,7 +48,7 @@ class GoalAction:
         if goal is not None:
             self._feedback.publish_encoded(messages.feedback_message(goal.info.id, status))
         if self._goals.report(status) or (self._goals and status.tick % STATES_TICKS == 0):
-            self._tell()
+            self._publish()
         self.answer()
 
     def answer(self) -> None:
@@ -60,7 +60,7 @@ class GoalAction:
     def close(self) -> None:
         """The executive ends: whoever waits for a result gets one."""
         if self._goals.end(GoalResult("stopped")):
-            self._tell()
+            self._publish()
         self.answer()
 
     def _send(self, call: RosCall) -> ServiceRequest | None:
@@ -79,7 +79,7 @@ class GoalAction:
             else:  # it had no condition: nothing is pursued, and the status is still that of the goal before
                 self._goals.abort(goal, GoalResult("cancelled", detail=text))
             call.respond(messages.sent_response(True, goal.stamp_ns))
-            self._tell()
+            self._publish()
 
         return ServiceRequest(sent[1], respond)
 
@@ -97,14 +97,14 @@ class GoalAction:
             if accepted:
                 goal.state = GoalState.CANCELING
                 call.respond(messages.cancel_response(CancelCode.NONE, [goal.info]))
-                self._tell()
+                self._publish()
             else:
                 call.respond(messages.cancel_response(CancelCode.REJECTED, ()))
 
         return ServiceRequest(DROP, respond)
 
     def _result(self, call: RosCall) -> None:
-        wanted = messages.asked_result(call.data)
+        wanted = messages.requested_result(call.data)
         goal = None if isinstance(wanted, Rejected) else self._goals.get(wanted)
         if goal is None:
             call.respond(messages.result_response(GoalState.UNKNOWN, UNKNOWN))
@@ -120,7 +120,7 @@ class GoalAction:
             old, oldest = self._waiting.pop(0)
             oldest.respond(messages.result_response(old.state, old.result))
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         """Publish the states of the goals, and answer who waits for the result of one that has ended."""
         self._states.publish_encoded(messages.states_message((goal.info, goal.state) for goal in self._goals))
         waiting, self._waiting = self._waiting, []

@@ -117,7 +117,7 @@ def test_one_of_several_drivers_that_is_disarmed_confirms_nothing_for_the_others
     for number in range(20):
         made.hear(state("armed", epoch=8, sender=A) if number % 2 else state(), 0.02 + 0.05 * number)
         assert made.outcome(0.02 + 0.05 * number) is None
-    assert made.told.epoch == 8
+    assert made.reported.epoch == 8
     made.hear(state(epoch=8), 1.05)
     assert made.outcome(1.05) is Outcome.CONFIRMED
 

@@ -78,11 +78,11 @@ def run(arguments: argparse.Namespace) -> int:
             return stop.exit_code
         others = "" if exchange.state is not None else _others(session)
         others += "" if session.connected else "; the bus was lost"
-    state = _text(robot, exchange.told) + others
+    state = _text(robot, exchange.reported) + others
     withdrawn = "" if arguments.off else ", so it was taken back"
     advice = _advice(robot, exchange.refusal)
     text = TEXTS[outcome].format(state=state, refusal=exchange.refusal, robot=robot, withdrawn=withdrawn, advice=advice)
-    _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.told)
+    _print(arguments, robot, outcome.name.lower().replace("_", " "), text, exchange.reported)
     if outcome in (Outcome.NO_CONFIRMATION, Outcome.NOT_SENT) and (hint := key_advice(arguments, "arms drivers")):
         print(hint, file=sys.stderr)
     return 0 if outcome is Outcome.CONFIRMED else 1

@@ -195,8 +195,8 @@ def _measured(making: Making, title: str, settings: argparse.Namespace) -> dict[
 
 def _errors(settings: argparse.Namespace, zoo: Path) -> dict[str, float]:
     """Mean over the actions of errors on fresh random episodes; missed failures if failures are learned."""
-    asked = {**vars(settings), "zoo": str(zoo), "episodes": settings.fresh}
-    made = model_rows.rows(settings.domain, argparse.Namespace(**asked), floors=False)
+    flags = {**vars(settings), "zoo": str(zoo), "episodes": settings.fresh}
+    made = model_rows.rows(settings.domain, argparse.Namespace(**flags), floors=False)
     columns = {"error_pct": "relative_pct", "missed_failures_pct": "missed_failures_pct"}
     return {
         name: float(np.mean([row[key] for row in made if key in row]))

@@ -138,9 +138,9 @@ def _misreading(outlet: Outlet, written: tuple[float, ...], axes: tuple[str, ...
         return f": the domain's message cannot be made: {raised_text(error)}"
     if read == written:
         return ""
-    said = ", ".join(f"{value:g}" for value in written)
+    values = ", ".join(f"{value:g}" for value in written)
     heard = ", ".join(f"{value:g}" if isinstance(value, int | float) else shown(value) for value in read) or "nothing"
-    return f" carries {said} for {', '.join(axes)}, and the driver reads {heard}"
+    return f" carries {values} for {', '.join(axes)}, and the driver reads {heard}"
 
 
 def _unfit_rates(domain: Domain, driver: DriverSpec) -> Iterator[str]:
