@@ -31,23 +31,19 @@ class HeldSwitches:
         """Senders that hold a switch, sorted."""
         return tuple(sorted(self._held))
 
-    def hold(self, sender: str, sequence: int, arrival_ns: int) -> HoldRefusal | None:
-        """Note that a switch is held.
+    def hold(self, sender: str, sequence: int, arrival_ns: int) -> None:
+        """Note that a switch is held; a message on which the driver does not count is counted as refused.
 
         Args:
           sender: Its sender, 32 hex digits; empty: unsigned.
           sequence: Number of the message, counted by the sender; 0: not numbered.
           arrival_ns: Monotonic time of its arrival.
-
-        Returns:
-          The reason for a refusal, which changes nothing but a count; None if the driver counts on this switch.
         """
         refusal = self._refusal(sender, sequence)
-        if refusal is not None:
+        if refusal is None:
+            self._held[sender] = (arrival_ns, sequence)
+        else:
             self.refused[refusal] += 1
-            return refusal
-        self._held[sender] = (arrival_ns, sequence)
-        return None
 
     def released(self, now_ns: int) -> tuple[str, ...]:
         """Senders that have been silent for too long; they are forgotten."""

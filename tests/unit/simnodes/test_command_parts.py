@@ -145,6 +145,13 @@ def test_parts_from_before_arming_are_not_joined_with_later_ones():
     assert driver.guard.output(2) == REST
 
 
+def test_another_sender_that_is_obeyed_ends_the_wait_for_parts_of_the_one_before():
+    parts = CommandParts((1, 1))
+    assert parts.join(Part(0, 1, (0.9,), 0), A, armed_sender=A) == []
+    assert parts.join(Part(1, 1, (0.3,), 0), B, armed_sender=B) == []
+    assert parts.join(Part(0, 1, (0.4,), 0), B, armed_sender=B) == [Joined(1, (0.4, 0.3))]
+
+
 @pytest.mark.promise("P14")
 @pytest.mark.parametrize("stop", ["disarmed", "e-stop", "silence"])
 def test_parts_from_before_a_stop_are_not_joined_with_those_after_arming_again(stop):

@@ -55,6 +55,15 @@ def test_a_delay_that_grows_faster_than_clocks_drift_is_refused_in_the_end():
     assert now_ns == 334_000 * MS, "0.3 s later than the drift explains"
 
 
+def test_a_sender_whose_clock_is_hours_behind_is_judged_alike():
+    stamps = Stamps()
+    for now_ns in range(10 * HOUR_NS, 10 * HOUR_NS + SETTLED * 100 * MS, 100 * MS):
+        assert stamps.refusal(now_ns, now_ns - 9 * HOUR_NS) is None
+        stamps.accept(now_ns, now_ns - 9 * HOUR_NS)
+    assert stamps.refusal(now_ns, now_ns - 9 * HOUR_NS - 300 * MS) is None
+    assert stamps.refusal(now_ns, now_ns - 9 * HOUR_NS - 301 * MS) is CommandRefusal.LATE
+
+
 def test_a_command_without_a_stamp_is_neither_judged_nor_a_measure():
     stamps, now_ns = settled()
     assert stamps.refusal(now_ns, 0) is None
