@@ -8,7 +8,8 @@ from pathlib import Path
 from tailor.models.cards.card import MAX_CARD_BYTES, MAX_MODEL_BYTES, card_path
 from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
-from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.episodes.episodes import read_data_set
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.episodes.part_reader import parts_of
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
@@ -55,32 +56,23 @@ def write_data(data: Path, licence: str | None, folder: Path) -> None:
     """Write the data sets in the sub-folders of a folder as a folder of the hub; hidden ones are left out.
 
     Raises:
-      UsageError: There are no data sets, they are of several robots, or a part is damaged.
+      UsageError: There are no data sets, they are of several robots, or a manifest or a part is damaged.
     """
     sets = sorted(manifest.parent for manifest in data.glob(f"*/{MANIFEST}") if manifest.parent.name[0] != ".")
-    manifests = {each.name: read_manifest(each) for each in sets}
+    manifests, rows = {}, 0
+    for each in sets:
+        read = read_data_set(each)
+        manifests[each.name], rows = read.manifest, rows + sum(len(episode.ticks) for episode in read.episodes)
     robots = sorted({manifest["robot"] for manifest in manifests.values()})
     if len(robots) != 1:
         found = ", ".join(robots) or "none"
         raise UsageError(f"{data}: data sets of {found}, expected those of one robot (`tailor gather` writes them)")
     parts = [part for each in sets for part in parts_of(each)]
     files = [file.relative_to(data) for file in (*parts, *(each / MANIFEST for each in sets))]
-    rows = sum(map(_rows, parts))
     _copy(data, files, folder)
     card = data_card(robots[0], manifests, rows, licence or licence_of(robots[0]))
     (folder / README).write_text(card, encoding="utf-8")
     write_checksums(folder, files)
-
-
-def _rows(part: Path) -> int:
-    import pyarrow as pa  # here, so that models need no pyarrow
-    import pyarrow.parquet as pq
-
-    try:
-        return int(pq.read_metadata(part).num_rows)
-    except (pa.ArrowException, OSError) as error:
-        first = str(error).partition("\n")[0]
-        raise UsageError(f"{part}: cannot be read ({first}), expected a part of a data set") from None
 
 
 def _copy(source: Path, files: list[Path], target: Path) -> None:

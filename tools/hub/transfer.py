@@ -16,7 +16,8 @@ from tailor.executive.robot_models import check_fit
 from tailor.models.cards.card import card_path
 from tailor.models.cards.checks import check_place
 from tailor.models.cards.model_files import read_model
-from tailor.models.episodes.manifest import MANIFEST, read_manifest
+from tailor.models.episodes.episodes import read_data_set
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.export.zoo_writer import replace_model
 from tailor.models.runtime import load_model
 from tailor.schemas.errors import UsageError
@@ -84,8 +85,8 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
     """Get data sets and put them into a folder; returns their folders there.
 
     Raises:
-      UsageError: Nothing there, a file differs from its checksum, a manifest is damaged or too large, or the folder
-        has a data set of that name, or something else, which `replace` does not remove.
+      UsageError: Nothing there, a file differs from its checksum, a manifest or a part is damaged or too large, or
+        the folder has a data set of that name, or something else, which `replace` does not remove.
     """
     with temporary_beside(data) as temporary:
         files = fetched(place, "dataset", revision, DATA_FILES, temporary)
@@ -94,7 +95,7 @@ def pull_data(place: Place, revision: str | None, data: Path, replace: bool) -> 
             raise UsageError(f"{place}: no data sets, expected what `tailor models push --data DIR` wrote")
         with _errors_of(place, temporary):
             for name in names:
-                read_manifest(temporary / name)
+                read_data_set(temporary / name)  # whole, as training does
         existing = [data / name for name in names if os.path.lexists(data / name)]
         _refuse([path for path in existing if not replace])
         if strange := [path for path in existing if not (path / MANIFEST).is_file()]:  # the pushed names are another's

@@ -181,7 +181,7 @@ def test_an_interrupted_pull_leaves_what_was_there(tmp_path, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(transfer, "read_manifest", interrupted)
+    monkeypatch.setattr(transfer, "read_data_set", interrupted)
     assert main(["models", "pull", "--data", "mine", "--from", "./pushed", "--replace"]) == 130
     assert (tmp_path / "mine" / "go" / "part-00001.parquet").read_bytes() == b"mine"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["data", "mine", "pushed"]
@@ -372,6 +372,22 @@ def test_a_damaged_part_is_named_before_anything_is_pushed(tmp_path, monkeypatch
     part.write_bytes(part.read_bytes()[:100])
     assert "data/go/part-00000.parquet: cannot be read (" in refused(capsys, "push", "--data", "data", "--to", "./a")
     assert not (tmp_path / "a").exists()
+
+
+def test_a_part_that_training_would_refuse_is_neither_pushed_nor_pulled(tmp_path, monkeypatch, capsys):
+    """Its footer was read alone."""
+    monkeypatch.chdir(tmp_path)
+    data_sets(tmp_path / "data")
+    assert main(["models", "push", "--data", "data", "--to", "./pushed"]) == 0
+    unknown = Episode(0, np.zeros(2), np.full((2, 2), np.nan), 0.2, True, "")
+    for folder in ("data", "pushed"):
+        write_part(tmp_path / folder / "turn" / "part-00000.parquet", [unknown], ["x", "xg"])
+    pushed = tmp_path / "pushed"
+    write_checksums(pushed, [file.relative_to(pushed) for file in pushed.glob("*/*.*")])
+    wrong = "turn/part-00000.parquet: column x holds values that are not finite numbers"
+    assert f"data/{wrong}" in refused(capsys, "push", "--data", "data", "--to", "./again")
+    assert f"pushed/{wrong}" in refused(capsys, "pull", "--data", "theirs", "--from", "./pushed")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["data", "pushed"]
 
 
 def test_nothing_is_pushed_that_no_pull_would_take(tmp_path, monkeypatch, capsys):
