@@ -5,17 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tailor.executive import domains
+from tailor.models.episodes.manifest import MANIFEST
 from tailor.models.episodes.whole_files import only_writer
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.output_folders import temporary_beside
 from tailor.tools.contract.trial import try_actions
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.learning import gather_options as options
 from tailor.tools.learning.gathering import random_episodes
 from tailor.tools.learning.gathering.data_set_spec import DataSetSpec
+from tailor.tools.learning.gathering.manifests import check_resumable
 from tailor.tools.learning.gathering.progress import gathered, note, shown
 from tailor.tools.lockstep.blame import blamed_on_run
 from tailor.tools.lockstep.bodies import check_profile
@@ -23,6 +27,9 @@ from tailor.tools.lockstep.episode_extraction import data_set_of
 from tailor.tools.parallel.cluster import working_on
 from tailor.tools.parallel.software import Work
 from tailor.tools.parallel.steps import counted
+
+if TYPE_CHECKING:
+    from tailor.tools.learning.gathering.recorded_runs import Extracted
 
 configure = options.configure
 
@@ -92,12 +99,12 @@ def _uncertain(arguments: argparse.Namespace, name: str, out: Path) -> int:
 
 def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     """Gather from recordings, or from whole runs with the current models."""
-    from tailor.tools.learning.gathering import policy_runs, recorded_runs
+    from tailor.tools.learning.gathering import policy_runs
 
     if arguments.actions:
         raise UsageError("whole runs take no ACTION, expected none with --from, --on-policy and --active")
     if arguments.recordings:
-        extracted = recorded_runs.extract_from_recordings(domain, out, arguments.recordings)
+        extracted = _extracted(domain, out, arguments.recordings)
         for line in extracted.left_out:
             note(line)
         found = ", ".join(f"{action} {count}" for action, count in extracted.counts.items())
@@ -117,6 +124,28 @@ def _from_runs(arguments: argparse.Namespace, domain: str, out: Path) -> int:
     running = policy_runs.run_policy(policy, arguments.jobs, arguments.resume)
     steps = counted("runs", running, len(policy.jobs), policy_runs.finished_runs(policy))
     return shown(steps, out, arguments.json)
+
+
+def _extracted(domain: str, out: Path, recordings: list[Path]) -> Extracted:
+    """Extract recordings into a folder, all of them or none: --resume continues simulated runs only.
+
+    Manifests come last: without one, what a kill leaves passes for no data set.
+    """
+    from tailor.tools.learning.gathering.recorded_runs import extract_from_recordings
+
+    with temporary_beside(out / "recordings") as temporary:
+        try:
+            extracted = extract_from_recordings(domain, temporary, recordings)
+        except UsageError as error:
+            raise UsageError(str(error).replace(str(temporary), str(out))) from None
+        folders = sorted(temporary.iterdir())
+        for folder in folders:
+            check_resumable(out / folder.name, {}, resume=False)
+        for folder in folders:
+            (out / folder.name).mkdir(exist_ok=True)
+            for path in sorted(folder.iterdir(), key=lambda path: path.name == MANIFEST):
+                path.replace(out / folder.name / path.name)
+    return extracted
 
 
 def actions_of(domain: str, requested: list[str], beside: bool = False) -> list[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tailor.models.episodes import episodes, manifest, whole_files
 from tailor.models.episodes.episodes import read_data_set
 from tailor.runtime.bus.attachment import Origin, pack
 from tailor.runtime.bus.encoding import encoding_named
@@ -43,6 +44,27 @@ def test_a_recording_gives_data_sets_of_the_actions_in_it_and_of_no_others(tmp_p
     assert {path.name for path in tmp_path.iterdir()} == {action for action, count in counts.items() if count}
     assert main(cut) == 2  # what is there is not overwritten
     assert "holds episodes already" in capsys.readouterr().err
+
+
+def test_recordings_that_the_disk_has_no_space_for_leave_no_part_of_a_data_set(tmp_path, monkeypatch, capsys) -> None:
+    """Half of the episodes stayed, beside a manifest that named all recordings, and no command continued them."""
+    write, written = whole_files.write_whole, []
+
+    def full(path: Path, content: bytes) -> None:
+        written.append(path)
+        if len(written) == 4:
+            raise UsageError(f"{path}: No space left on device")
+        write(path, content)
+
+    cut = ["gather", "agilo", "--from", str(RECORDING), "--out", str(tmp_path / "x")]
+    with monkeypatch.context() as patched:
+        for module in (episodes, manifest):
+            patched.setattr(module, "write_whole", full)
+        assert main(cut) == 2
+    last = written[-1].relative_to(written[-1].parents[1])
+    assert capsys.readouterr().err == f"tailor gather: {tmp_path / 'x' / last}: No space left on device\n"
+    assert not (tmp_path / "x").exists()
+    assert main(cut) == 0
 
 
 def test_recordings_need_no_simulated_body(tmp_path: Path, monkeypatch) -> None:
