@@ -6,10 +6,10 @@ import dataclasses
 import hashlib
 import json
 from pathlib import Path
-from typing import Any
 
-from tailor.schemas.errors import UsageError
-from tailor.tools.evaluations.costs import Costs
+from tailor.schemas.errors import Rejected, UsageError
+from tailor.schemas.parsed_files import table_of
+from tailor.schemas.settings import from_table
 from tailor.tools.evaluations.outcome import Outcome, Task, Variant
 
 
@@ -66,13 +66,10 @@ class Journal:
 
 def _read(line: str) -> Outcome | None:
     """The outcome of a line; None for a truncated or damaged line, whose run is repeated."""
-    try:
-        fields = json.loads(line)
-        costs = Costs(**{key: _frozen(value) for key, value in fields.pop("costs").items()})
-        return Outcome(**{key: _frozen(value) for key, value in fields.items()}, costs=costs)
-    except (ValueError, TypeError, AttributeError, KeyError):
+    fields = table_of(line)
+    if isinstance(fields, Rejected):
         return None
-
-
-def _frozen(value: Any) -> Any:
-    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+    try:
+        return from_table(Outcome, fields, "")
+    except UsageError:
+        return None

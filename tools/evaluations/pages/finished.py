@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tailor.tools.cli.output_files import whole_output
-from tailor.tools.evaluations.pages.overview import page_is_there
+from tailor.tools.evaluations.pages.stored_results import read_object, stored_result
 
 HASHES, SHA256 = ("source_sha256", "models_sha256"), re.compile("[0-9a-f]{64}")
 WITHOUT_EFFECT = ("jobs", "on", "json", "report", "store")  # flags that change no figure
@@ -35,7 +35,7 @@ def forget(folder: Path, name: str) -> None:
 
 
 def exit_code_of(folder: Path, name: str, flags: Mapping[str, Any], provenance: Mapping[str, Any]) -> int | None:
-    """Exit code of an evaluation whose page is there; None unless flags, source and models are the same.
+    """Exit code of an evaluation whose page is there; None unless all can be read, and flags, source and models equal.
 
     Args:
       folder: Of the pages.
@@ -43,12 +43,13 @@ def exit_code_of(folder: Path, name: str, flags: Mapping[str, Any], provenance: 
       flags: Those of now; see `flags_of`.
       provenance: Hashes of the source and the models of now, which count as far as the page states any.
     """
-    if not page_is_there(folder, name) or not _file(folder, name).exists():
+    result, noted = stored_result(folder, name), read_object(_file(folder, name))
+    code = noted.get("exit_code")
+    if result is None or not isinstance(code, int):
         return None
-    stated = json.loads((folder / f"{name}.json").read_text("utf-8")).get("provenance", {})
-    noted = json.loads(_file(folder, name).read_text("utf-8"))
-    same = all(stated[key] == provenance[key] for key in HASHES if SHA256.fullmatch(stated.get(key, "")))
-    return int(noted["exit_code"]) if same and noted["flags"] == flags else None
+    stated = {key: str(result["provenance"].get(key, "")) for key in HASHES}
+    same = all(stated[key] == provenance[key] for key in HASHES if SHA256.fullmatch(stated[key]))
+    return code if same and noted.get("flags") == flags else None
 
 
 def _file(folder: Path, name: str) -> Path:

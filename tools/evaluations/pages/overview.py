@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import html
-import json
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from tailor.tools.cli.output_files import whole_output
 from tailor.tools.evaluations.pages.column_titles import column_title
 from tailor.tools.evaluations.pages.report import shown
+from tailor.tools.evaluations.pages.stored_results import stored_result
 from tailor.tools.figures.report_page import page, table
 
 ROWS_MAX = 6
@@ -28,11 +28,6 @@ MAIN = (
 )  # fmt: skip
 
 
-def page_is_there(folder: Path, name: str) -> bool:
-    """Whether the folder holds the complete result of an evaluation."""
-    return (folder / f"{name}.json").exists() and (folder / f"{name}.html").exists()
-
-
 def write_overview(folder: Path, names: Sequence[str]) -> Path:
     """Write index.html: a section for each evaluation with a page, and a list of the missing ones.
 
@@ -40,9 +35,9 @@ def write_overview(folder: Path, names: Sequence[str]) -> Path:
       folder: Folder of the pages; created if missing.
       names: All evaluations, in order.
     """
-    there = [name for name in names if page_is_there(folder, name)]
-    missing = [name for name in names if name not in there]
-    body = [_section(folder, name) for name in there]
+    results = {name: stored_result(folder, name) for name in names}
+    missing = [name for name, result in results.items() if result is None]
+    body = [_section(folder, name, result) for name, result in results.items() if result is not None]
     if missing:
         body.append(f"<p>Not run: {html.escape(', '.join(missing))}.</p>")
     path = folder / "index.html"
@@ -51,11 +46,9 @@ def write_overview(folder: Path, names: Sequence[str]) -> Path:
     return path
 
 
-def _section(folder: Path, name: str) -> str:
+def _section(folder: Path, name: str, report: Mapping[str, Any]) -> str:
     """Title with a link, time of the run, main figures of the first rows."""
-    file = folder / f"{name}.json"
-    report = json.loads(file.read_text("utf-8"))
-    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(file.stat().st_mtime))
+    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime((folder / f"{name}.json").stat().st_mtime))
     every: list[dict[str, Any]] = report["rows"]
     rows = every if len(every) <= ROWS_MAX else [*every[: ROWS_MAX - 1], every[-1]]  # the last is often the mean
     columns = [column for column in MAIN if any(column in row for row in rows)]

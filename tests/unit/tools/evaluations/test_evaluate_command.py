@@ -15,8 +15,9 @@ import pytest
 from tailor.schemas.errors import UsageError
 from tailor.tools.commands.measure import evaluate
 from tailor.tools.evaluations import catalogue
-from tailor.tools.evaluations.pages.overview import page_is_there, write_overview
+from tailor.tools.evaluations.pages.overview import write_overview
 from tailor.tools.evaluations.pages.report import Report, configure_report, publish_report, shown
+from tailor.tools.evaluations.pages.stored_results import stored_result
 from tailor.tools.evaluations.seeds import Seeds
 from tailor.tools.launch.checks import package_check
 from tailor.tools.main import main
@@ -256,7 +257,7 @@ def test_pages_fit_a_phone_and_state_the_zone_of_their_times(tmp_path):
 def test_a_page_that_was_interrupted_does_not_pass_for_the_one_before(tmp_path, monkeypatch):
     made = Report("first", "The first one", [{"n": 3}], (), {}, {})
     publish_report(made, flags(tmp_path))
-    assert page_is_there(tmp_path, "first")
+    assert stored_result(tmp_path, "first")
 
     def interrupted(*_, **__):
         raise KeyboardInterrupt
@@ -266,9 +267,23 @@ def test_a_page_that_was_interrupted_does_not_pass_for_the_one_before(tmp_path, 
             patched.setattr(Path, name, interrupted)
             with pytest.raises(KeyboardInterrupt):
                 publish_report(made, flags(tmp_path))
-        assert not page_is_there(tmp_path, "first")
+        assert not stored_result(tmp_path, "first")
     publish_report(made, flags(tmp_path))
-    assert page_is_there(tmp_path, "first")
+    assert stored_result(tmp_path, "first")
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b"\xff", b"[" * 100_000, b'{"title": 1, "rows": []}'])
+@pytest.mark.parametrize("file", ["first.json", ".first.finished.json"])
+def test_an_evaluation_whose_stored_result_is_damaged_is_run_again(file, content, tmp_path, capsys):
+    """Each ended with a traceback, a page of another evaluation after all had been run."""
+    resumed = ["evaluate", "first", "--report", str(tmp_path), "--resume"]
+    assert main(resumed) == main(resumed) == 0
+    assert CALLS == ["first"]
+    (tmp_path / file).write_bytes(content)
+    assert main(["evaluate", "second", "--report", str(tmp_path)]) == 1
+    assert main(resumed) == 0
+    assert CALLS == ["first", "second", "first"]
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_json_of_a_report_has_its_rows(tmp_path, capsys):

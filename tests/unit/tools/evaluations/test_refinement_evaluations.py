@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -106,7 +106,21 @@ def test_finished_episodes_survive_a_break_and_a_torn_line(tmp_path):
     assert sorted(Journal(tmp_path, task, variant, ["a"]).known) == [1, 3]
 
 
-@pytest.mark.parametrize("damage", [b'{"seed": 5}\n', b"[1, 2]\n", b"7\n", b'\xff\xfe"\n'])
+WHOLE = json.dumps(asdict(DONE)).encode()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        b'{"seed": 5}\n',
+        b"[1, 2]\n",
+        b"7\n",
+        b'\xff\xfe"\n',
+        b"[" * 100_000 + b"\n",
+        WHOLE.replace(b'"seed": 1', b'"seed": {}') + b"\n",
+        WHOLE.replace(b'"seed": 1', b'"seed": 2').replace(b'"duration_s": 10.0', b'"duration_s": null') + b"\n",
+    ],
+)
 def test_a_damaged_line_costs_its_own_episode_and_no_other(tmp_path, damage):
     task, variant = Task("soccer", "approach-dribble"), Variant("h1")
     Journal(tmp_path, task, variant, ["a"]).note(DONE)
