@@ -23,9 +23,9 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # idle BLAS 
 _PARENT_DEATH_SIGNAL = str(Path(__file__).with_name("parent_death_signal.py"))
 
 
-def bound_to_parent(argv: Sequence[str], number: signal.Signals = signal.SIGTERM) -> list[str]:
-    """Command that runs `argv`, which receives signal `number` when this process dies."""
-    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), str(int(number)), *argv]
+def _bound_to_parent(argv: Sequence[str]) -> list[str]:
+    """Command that runs `argv`, which receives SIGTERM when this process dies."""
+    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), str(int(signal.SIGTERM)), *argv]
 
 
 class Child:
@@ -101,7 +101,7 @@ def _started(
     """The process, which is killed if this one dies."""
     # A session of its own: Ctrl-C reaches only the launcher, which then stops its children in order.
     process = subprocess.Popen(
-        bound_to_parent(argv),
+        _bound_to_parent(argv),
         env=environment,
         stdout=output,
         stderr=output,

@@ -1,4 +1,4 @@
-"""Runs an external planner such as `vhpop` as a child process: polled without blocking, killed with its session.
+"""Runs an external planner such as `vhpop` as a child process: polled without blocking, killed with all it started.
 
 Owns the child, its files and its limits of time, output and memory. Does not parse the plan.
 """
@@ -8,11 +8,11 @@ from __future__ import annotations
 import atexit
 import contextlib
 import os
-import resource
 import shlex
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -22,14 +22,15 @@ from pathlib import Path
 from typing import Literal
 
 from tailor.runtime.planners.named import named_planner
-from tailor.runtime.processes.child import bound_to_parent
+from tailor.runtime.processes.last_line import LastLine
 from tailor.runtime.processes.session_end import end_session
 from tailor.schemas.errors import UsageError
 
 MAX_OUTPUT_BYTES = 1_000_000  # a printed plan of a thousand steps has a tenth of that
 MAX_MEMORY_BYTES = 2 << 30  # address space; the robot's own processes run on the same machine
 _CHUNK = 65536
-_REAP_S = 0.005  # a killed process has ended by then, except a huge one; upper bound of the wait
+_END_S = 5.0  # a subreaper has killed all processes by then, or gives up itself
+_SUBREAPER = str(Path(__file__).with_name("subreaper.py"))
 # vfork blocks all threads until the child has started (see the notes of subprocess)
 vars(subprocess)["_USE_VFORK"] = False
 
@@ -58,15 +59,15 @@ class PlannerProcess:
         max_bytes: int = MAX_OUTPUT_BYTES,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Starts the child as `command DOMAIN PROBLEM` in a session of its own.
+        """Starts the child as `command DOMAIN PROBLEM`, below a process that ends whatever it starts.
 
         Args:
           command: Program and arguments, quoted as in a shell but run without one: "vhpop -g -f MW-Loc"; or a name:
             "kairos", "kairos:5", "up:pyperplan".
           domain: PDDL text, passed in a file.
           problem: PDDL text, passed in a file.
-          limit_s: Wall time in seconds after which the session is killed; vhpop's own -T has a resolution of minutes.
-          max_bytes: Size of the output after which the session is killed; a poll reads about 64 kB, a full pipe.
+          limit_s: Wall time in seconds after which it is killed; vhpop's own -T has a resolution of minutes.
+          max_bytes: Size of the output after which it is killed; a poll reads about 64 kB, a full pipe.
           clock: Monotonic clock in seconds.
 
         Raises:
@@ -82,6 +83,8 @@ class PlannerProcess:
         except OSError as error:
             raise _cannot_start(command, error) from None
         self._child = self._start(command, {"domain.pddl": domain, "problem.pddl": problem})
+        assert self._child.stderr is not None
+        self._errors = LastLine(self._child.stderr)
         self._deadline = clock() + limit_s
 
     def _start(self, command: str, files: Mapping[str, str]) -> subprocess.Popen[bytes]:
@@ -91,10 +94,11 @@ class PlannerProcess:
             for path, text in zip(paths, files.values(), strict=True):
                 path.write_text(text, encoding="utf-8")
             child = subprocess.Popen(
-                bound_to_parent([*words, *map(str, paths)], signal.SIGKILL),  # it has nothing to tidy up
-                stdin=subprocess.DEVNULL,
+                [sys.executable, "-I", "-S", _SUBREAPER, str(MAX_MEMORY_BYTES), *words, *map(str, paths)],
+                bufsize=0,
+                stdin=subprocess.PIPE,  # kills the planner when it is closed, also by the death of this process
                 stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
                 start_new_session=True,
             )
         except OSError as error:
@@ -103,15 +107,13 @@ class PlannerProcess:
         except UsageError:
             self._folder.cleanup()
             raise
-        with contextlib.suppress(OSError):  # it has already ended
-            resource.prlimit(child.pid, resource.RLIMIT_AS, (MAX_MEMORY_BYTES, MAX_MEMORY_BYTES))
         assert child.stdout is not None
         os.set_blocking(child.stdout.fileno(), False)
         return child
 
     @property
     def pid(self) -> int:
-        """Process id of the child, equal to its group id."""
+        """Process id of the child, equal to its session id."""
         return self._child.pid
 
     def poll(self) -> PlannerAnswer | None:
@@ -130,11 +132,12 @@ class PlannerProcess:
         return self._answer
 
     def kill(self) -> None:
-        """Kills the child's whole session; safe to call again."""
+        """Kills the child and all that it started; safe to call again."""
         if self._answer is None:
             self._end("timeout", "the planner was killed")
 
     def _read(self) -> None:
+        self._errors.read()
         assert self._child.stdout is not None
         descriptor = self._child.stdout.fileno()
         while len(self._output) <= self._max_bytes:
@@ -147,28 +150,31 @@ class PlannerProcess:
             self._output += chunk
 
     def _end(self, outcome: Outcome, reason: str) -> None:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._child.pid, signal.SIGKILL)  # a child that has ended may have left children
-        self._tidy_aside(killed=outcome in ("timeout", "flood"))
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._child.wait(_REAP_S)
+        assert self._child.stdin is not None
         assert self._child.stdout is not None
+        with contextlib.suppress(OSError):  # it has ended
+            self._child.stdin.write(b"\n")  # heard although a fork of this process holds the pipe open
+        self._child.stdin.close()
+        self._child.send_signal(signal.SIGCONT)  # somebody may have stopped it
         self._child.stdout.close()
-        text = self._output[: self._max_bytes].decode("utf-8", errors="replace")
-        self._answer = PlannerAnswer(outcome, text, reason)
+        self._errors.close()
+        self._tidy_aside()
+        text = self._output[: self._max_bytes].decode("utf-8-sig", errors="replace")
+        last = self._errors.quoted()
+        self._answer = PlannerAnswer(outcome, text, f"{reason} (stderr: {last})" if last else reason)
 
-    def _tidy_aside(self, killed: bool) -> None:
+    def _tidy_aside(self) -> None:
         """Tidy up on a thread that outlives the tick, and is awaited at the end of this process."""
         try:
-            threading.Thread(target=self._tidy, args=(killed,), name="planner-end").start()
-        except RuntimeError:  # the system has no thread left; what may take long is left to the end of this process
-            if killed:
-                end_session(self._child.pid, rounds=1)
-            atexit.register(self._folder.cleanup)
+            threading.Thread(target=self._tidy, name="planner-end").start()
+        except RuntimeError:  # the system has no thread left
+            atexit.register(self._tidy)
 
-    def _tidy(self, killed: bool) -> None:
+    def _tidy(self) -> None:
         """Remove the files; those of the planner as well, which may be many, once nobody writes more beside them."""
-        if killed:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._child.wait(_END_S)
+        if self._child.returncode is None or self._child.returncode < 0:  # stopped, or killed before its children
             end_session(self._child.pid)
         self._folder.cleanup()
 
