@@ -132,6 +132,13 @@ def test_options_have_vhpops_letters_and_names(capsys):
     assert plan(capsys, DOMAIN, PROBLEM, *long)[0] == 0
 
 
+@pytest.mark.parametrize("ranking", ["", "/", "ADDR/"])
+def test_an_empty_ranking_is_none_and_not_the_default(capsys, ranking):
+    code, out, err = plan(capsys, DOMAIN, PROBLEM, "-h", ranking)
+    assert (code, out) == (2, "")
+    assert "ranking '' is unknown; expected some of LIFO, " in err
+
+
 @pytest.mark.parametrize("name", ["IDA", "ida", "IDA*", "a*"])
 def test_searches_go_by_their_names_with_and_without_a_star(capsys, name):
     assert plan(capsys, DOMAIN, PROBLEM, "-s", name)[0] == 0

@@ -44,7 +44,7 @@ def _configure_search(group: argparse._ArgumentGroup) -> None:
     add = group.add_argument
     add("-g", "--ground-actions", dest="ground", action="store_true", default=True, help="ground actions (default)")
     add("--lifted", dest="ground", action="store_false", help="plan with variables instead of ground actions")
-    add("-h", "--heuristic", metavar="RANKING", default="",
+    add("-h", "--heuristic", metavar="RANKING",
         help=f"rankings joined by '/': {' '.join(NAMES)} (default ADDR/ADDR_WORK/BUC/LIFO)")  # fmt: skip
     add("-d", "--domain-constraints", *(f"-d{level}" for level in range(10)), action="store_true",
         help=argparse.SUPPRESS)  # as VHPOP's; lifted planning always keeps the domains of parameters  # fmt: skip
@@ -106,7 +106,7 @@ def settings_of(args: argparse.Namespace) -> Settings:
     """The search settings of the options."""
     chosen: dict[str, Any] = {"flaw_orders": tuple(args.orders)} if args.orders else {}
     return Settings(
-        rankings=tuple(args.heuristic.split("/")) if args.heuristic else (),
+        rankings=() if args.heuristic is None else tuple(args.heuristic.split("/")),
         search=args.search,
         ground=args.ground,
         weight=args.weight,
