@@ -56,8 +56,11 @@ class SystemModel:
             self._update(received, now_ns)
 
     def incomplete(self, now_ns: int) -> bool:
-        """Whether it is unknown what a live executive requires and was granted; it publishes that once a second."""
-        return self._executives.unknown(now_ns)
+        """Whether a live executive has not published what it requires, or a live system no launcher, yet.
+
+        Both are published once a second; a system started by hand has no launcher.
+        """
+        return self._executives.unknown(now_ns) or (self._launched is None and bool(self._arrivals))
 
     def picture(self, now_ns: int) -> Picture:
         """State of the system at `now_ns`."""

@@ -27,7 +27,7 @@ from tailor.tools.status.watcher import Watcher
 
 OBSERVE_S = 1.5  # every periodic topic comes at least once, state and odometry more often
 MIN_S, MAX_S = 0.2, 3600.0
-COMPLETE_S = 1.2  # by then an executive has published what it requires, which it does once a second
+COMPLETE_S = 1.2  # by then executive and launcher have published what they do once a second
 NICENESS = 10  # the executive has priority over the observer
 DRAIN_S = 0.05
 
@@ -74,7 +74,7 @@ def _once(arguments: argparse.Namespace, seconds: float, stop: Stop) -> Picture:
 
 
 def _observe(model: SystemModel, watcher: Watcher, seconds: float, stop: Stop) -> Picture:
-    """The state after some seconds; after `COMPLETE_S` where less left it open what is required."""
+    """The state after some seconds; after `COMPLETE_S` where less left open what is required, or launched."""
     began_s, polled_ns = time.monotonic(), time.monotonic_ns()
     while not stop.requested:
         elapsed_s = time.monotonic() - began_s

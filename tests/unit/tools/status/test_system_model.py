@@ -253,10 +253,15 @@ def test_privileges_come_from_the_provenance_and_foreign_content_leaves_them_emp
     assert feed.picture().executives[0].realtime == {"scheduler": "fifo 50"}
 
 
-def test_a_view_is_incomplete_until_a_live_executive_has_published_what_it_requires():
+@pytest.mark.parametrize("last", ["provenance", "processes"])
+def test_a_view_is_incomplete_until_a_live_executive_and_a_launcher_have_published_what_they_do_once_a_second(last):
     feed = Feed()
+    slow = {"provenance": m.Provenance(0, "{}"), "processes": m.ProcessStates(0, ())}
+    message = slow.pop(last)
     assert not feed.model.incomplete(round(feed.now_s * 1e9)), "nobody is there"
     feed.run(0.3)
+    for name, other in slow.items():
+        feed.put(name, other, EXECUTIVE)
     assert feed.model.incomplete(round(feed.now_s * 1e9))
-    feed.put("provenance", m.Provenance(0, "{}"), EXECUTIVE)
+    feed.put(last, message, EXECUTIVE)
     assert not feed.model.incomplete(round(feed.now_s * 1e9))
