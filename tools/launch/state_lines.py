@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 
 from tailor.runtime.aside import FINISH_S
@@ -12,6 +13,7 @@ from tailor.schemas.reason_text import without_numbers
 from tailor.tools.cli.plain_text import note, plain
 
 PERIOD_S = 0.2
+SELDOM_S = 10.0
 
 
 @contextlib.contextmanager
@@ -31,6 +33,19 @@ def state_lines(*texts: Callable[[], str]) -> Iterator[None]:
         ended.set()
         if texts:
             thread.join(FINISH_S)
+
+
+def seldom(text: Callable[[], str], now_s: Callable[[], float] = time.monotonic) -> Callable[[], str]:
+    """The text, which changes at once, and then not again for SELDOM_S: a broken sensor may change it all the time."""
+    last, due_s = "", now_s()
+
+    def renewed() -> str:
+        nonlocal last, due_s
+        if now_s() >= due_s and (line := text()) != last:
+            last, due_s = line, now_s() + SELDOM_S
+        return last
+
+    return renewed
 
 
 def _print(texts: Sequence[Callable[[], str]], ended: threading.Event) -> None:

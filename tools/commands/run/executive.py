@@ -35,7 +35,7 @@ from tailor.tools.launch.checks.driver_check import check_driver, driver_of, sen
 from tailor.tools.launch.checks.package_check import check_package
 from tailor.tools.launch.once import outcome
 from tailor.tools.launch.others import other_executives_noted
-from tailor.tools.launch.state_lines import state_lines
+from tailor.tools.launch.state_lines import seldom, state_lines
 from tailor.tools.recordings.recorded_source import source_entry
 
 
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         print_states = not notifier.supervised
         if print_states:
             print(beginning(context, goal), flush=True)
-        texts = [lambda: shell.refused_fields]  # also beneath a launcher: the status does not tell it
+        texts = [seldom(lambda: shell.refused_fields)]  # also beneath a launcher: the status does not tell it
         if print_states:
             texts.append(lambda: state_line(shell.state, context.domain.robot))
         noted = other_executives_noted(session, partial(note, to_stderr=True))

@@ -1,5 +1,6 @@
 """What `tailor executive` and `tailor sim` print when people start them by hand."""
 
+import itertools
 import sys
 import threading
 import time
@@ -17,7 +18,7 @@ from tailor.simnodes.driver_spec import shipped_driver_spec
 from tailor.simnodes.reasons import Reason as DriverReason
 from tailor.tools.commands.run import executive, sim
 from tailor.tools.launch.arming_advice import DriverLines, driver_line
-from tailor.tools.launch.state_lines import state_lines
+from tailor.tools.launch.state_lines import seldom, state_lines
 from tests.support.patience import wait_until
 
 
@@ -32,6 +33,19 @@ def test_a_line_is_printed_for_each_change_and_for_the_last_state(capsys):
     with state_lines(text):
         wait_until(lambda: current[0] == "waiting 1.7 s", "the third state", 10)
     assert capsys.readouterr().out == "waiting 1.5 s\nrunning\n"
+
+
+def test_a_text_that_changes_all_the_time_changes_at_once_and_then_seldom():
+    """Forged odometry, a wrong field after the other, printed a line in every fifth of a second."""
+    now_s, count = [100.0], itertools.count(1)
+    text = seldom(lambda: f"refused {next(count)}" if now_s[0] > 100.0 else "", lambda: now_s[0])
+    assert text() == ""
+    shown = []
+    for step in range(1, 251):
+        now_s[0] = 100.0 + step / 10
+        shown.append(text())
+    assert (shown[0], shown[99], shown[-1]) == ("refused 1", "refused 1", "refused 3")
+    assert len(set(shown)) == 3
 
 
 def test_several_states_are_printed_by_one_thread_so_that_no_line_cuts_another(capsys):
