@@ -41,6 +41,16 @@ def test_what_installs_a_new_robot_installs_the_pytest_that_its_readme_runs(kind
 
 
 @KINDS
+def test_the_wheel_of_a_new_robot_takes_every_kind_of_file_that_a_package_may_have(kind: str) -> None:
+    """An editable install hides what is missing: own messages were found there, and lost in the wheel."""
+    files = rendered("cart", kind)
+    paths = (*(ROOT / "tests" / "support" / "robots" / "forklift" / "truck").rglob("*"), *map(Path, files))
+    beside_code = {f"*{path.suffix}" for path in paths if path.suffix} - {"*.py", "*.pyc", "*.md"}
+    declared = tomllib.loads(files["pyproject.toml"])["tool"]["setuptools"]["package-data"]["*"]
+    assert {"*.msg", "*.toml", "*.pddl", "*.xml"} <= beside_code <= set(declared)
+
+
+@KINDS
 def test_no_placeholder_is_left(kind: str) -> None:
     assert [path for path, text in rendered("cart", kind).items() if "$" in path + text or "template" in path] == []
 
