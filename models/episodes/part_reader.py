@@ -16,19 +16,22 @@ from tailor.schemas.errors import UsageError
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    import pyarrow.parquet as pq
 
-WORK, IN_CONTEXT = "work_j", "in_context"
+WORK, IN_CONTEXT, FAILURE = "work_j", "in_context", "failure"
 # columns beside the numbers to learn from: check of the type in pyarrow.types, and the type in words
 PER_EPISODE = {
     "episode": ("is_integer", "integers"),
     "success": ("is_boolean", "true or false"),
     "finished": ("is_boolean", "true or false"),
-    "failure": ("is_string", "text"),
+    FAILURE: ("is_string", "text"),
     "tick": ("is_integer", "integers"),
     IN_CONTEXT: ("is_boolean", "true or false"),
 }
 OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
 MAX_ROWS = 2_000_000  # two days at 10 Hz; a megabyte may hold billions, which memory does not
+MAX_BYTES = 2_000_000_000  # of such rows, each with some hundred bytes
+MAX_TEXT = 200  # characters of a kind of failure, which stands in every row
 
 
 def parts_of(folder: Path) -> list[Path]:
@@ -65,25 +68,51 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
     try:
-        rows = pq.read_metadata(path).num_rows
-        if rows > MAX_ROWS:
-            raise UsageError(f"{path}: has {rows} rows, expected at most {MAX_ROWS} in a part of a data set")
-        table = pq.read_table(path, page_checksum_verification=True)
+        metadata = pq.read_metadata(path)
+        _check_extent(metadata, path)
+        present = set(metadata.schema.to_arrow_schema().names)
+        wanted = [name for name in (*PER_EPISODE, *numbers, WORK) if name in present or name not in OPTIONAL]
+        missing = [name for name in wanted if name not in present]
+        if missing or not metadata.num_rows:
+            raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
+        columns = list(dict.fromkeys(wanted))  # of others nothing is read
+        table = pq.read_table(path, columns=columns, read_dictionary=[FAILURE], page_checksum_verification=True)
         table.validate(full=True)  # text that is not UTF-8, say
+        table = _with_short_texts(table, path)
     except (pa.ArrowException, OSError) as error:
         first = str(error).partition("\n")[0]  # others list the columns
         raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
-    numbers = [*names, *(f"asked_{name}" for name in names), "duration_s"]
-    present = set(table.column_names)
-    wanted = [name for name in (*PER_EPISODE, *numbers, WORK) if name in present or name not in OPTIONAL]
-    missing = [name for name in wanted if name not in present]
-    if missing or not table.num_rows:
-        raise UsageError(f"{path}: lacks {', '.join(missing) or 'rows'}, expected a part of a data set")
-    checked = table.select(list(dict.fromkeys(wanted)))
-    _check_columns(checked, numbers, path)
-    check_repeated(checked, names, path)
-    return checked
+    _check_columns(table, numbers, path)
+    check_repeated(table, names, path)
+    return table
+
+
+def _check_extent(metadata: pq.FileMetaData, path: Path) -> None:
+    """Raise UsageError if a part is too large, which its compressed file does not tell."""
+    if metadata.num_rows > MAX_ROWS:
+        raise UsageError(f"{path}: has {metadata.num_rows} rows, expected at most {MAX_ROWS} in a part of a data set")
+    size = sum(metadata.row_group(k).total_byte_size for k in range(metadata.num_row_groups))
+    if size > MAX_BYTES:
+        raise UsageError(f"{path}: holds {size} bytes, expected at most {MAX_BYTES} in a part of a data set")
+
+
+def _with_short_texts(table: pa.Table, path: Path) -> pa.Table:
+    """The table with texts in each row, of which a file may hold a huge one once.
+
+    Raises:
+      UsageError: A text is too long for a kind of failure.
+    """
+    import pyarrow as pa
+
+    column = table[FAILURE]
+    if not pa.types.is_dictionary(column.type):
+        return table
+    longest = max((len(text or "") for chunk in column.chunks for text in chunk.dictionary.to_pylist()), default=0)
+    if longest > MAX_TEXT:
+        raise UsageError(f"{path}: column {FAILURE} holds {longest} characters, expected at most {MAX_TEXT}")
+    return table.set_column(table.column_names.index(FAILURE), FAILURE, column.cast(column.type.value_type))
 
 
 def _check_columns(table: pa.Table, numbers: Sequence[str], path: Path) -> None:

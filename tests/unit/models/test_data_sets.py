@@ -178,6 +178,37 @@ def test_a_part_that_no_memory_holds_is_refused_unread(folder: Path, monkeypatch
         read_data_set(folder)
 
 
+def test_a_part_whose_compressed_rows_no_memory_holds_is_refused_unread(folder: Path, monkeypatch) -> None:
+    monkeypatch.setattr(part_reader, "MAX_BYTES", 500)
+    monkeypatch.setattr(pq, "read_table", None)
+    with pytest.raises(
+        UsageError, match=r"part-000000-000006.parquet: holds \d+ bytes, expected at most 500 in a part"
+    ):
+        read_data_set(folder)
+
+
+def test_a_long_text_that_a_part_holds_once_is_not_put_into_every_row(folder: Path) -> None:
+    """A file of 270 kB made training ask for 12 GB."""
+    change_all("failure", ["x" * 201] * 6)(folder / PART)
+    with pytest.raises(UsageError, match=r"column failure holds 201 characters, expected at most 200"):
+        read_data_set(folder)
+
+
+def test_of_columns_that_are_not_learned_from_nothing_is_read(folder: Path, monkeypatch) -> None:
+    read, columns = pq.read_table, []
+    table = read(folder / PART)
+    pq.write_table(table.append_column("photo", pa.array(["x"] * table.num_rows)), folder / PART)
+
+    def noted(*arguments: object, **options: object) -> pa.Table:
+        columns.extend((found := read(*arguments, **options)).column_names)
+        return found
+
+    monkeypatch.setattr(pq, "read_table", noted)
+    assert len(read_data_set(folder).episodes) == 6
+    assert "failure" in columns
+    assert "photo" not in columns
+
+
 @pytest.mark.filterwarnings("error")
 def test_numbers_of_episodes_may_be_unsigned(folder: Path) -> None:
     table = pq.read_table(folder / PART)
