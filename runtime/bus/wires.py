@@ -88,9 +88,13 @@ def _bounded(part: Any, most: int) -> bytes:
 
 
 def received_raw(sample: zenoh.Sample, at_ns: int) -> Raw:
-    """Copy of a sample; `at_ns` is its wall time of reception unless zenoh stamped it."""
+    """Copy of a sample, received at the latest at `at_ns`, the present wall time.
+
+    zenoh's clock never goes back: where the wall clock has been set back, its stamps stand still until that catches up.
+    """
     raw = raw_of(sample)
-    return raw if raw.received_wall_ns is not None else replace(raw, received_wall_ns=at_ns)
+    stamped_ns = at_ns if raw.received_wall_ns is None else raw.received_wall_ns
+    return replace(raw, received_wall_ns=min(stamped_ns, at_ns))
 
 
 def _reception_stamp(sample: zenoh.Sample) -> int | None:
