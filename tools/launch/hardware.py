@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from tailor.runtime.bus.rights.credentials import identity_in
 from tailor.runtime.bus.rights.run_folder import run_folder
 from tailor.runtime.bus.zenoh_config import check_endpoint
@@ -12,6 +14,8 @@ from tailor.simnodes.hardware.interface import Hardware
 from tailor.simnodes.hardware.loading import load_hardware
 from tailor.simnodes.hardware.plain_robot import PlainRobot
 from tailor.simnodes.hardware.plain_settings import PlainSettings, read_plain_settings
+
+PLAIN_SENSORS = ("odom", "pose")
 
 
 def hardware_of(named: str, endpoint: str) -> Hardware:
@@ -31,6 +35,21 @@ def hardware_of(named: str, endpoint: str) -> Hardware:
     _check_commands(named, settings.robot)
     _check_bus(named, settings, endpoint)
     return PlainRobot(settings, endpoint)
+
+
+def check_sensors(named: str, required: Iterable[str]) -> None:
+    """Raise UsageError if a domain requires sensors that plain topics do not carry: the executive would hold for ever.
+
+    Args:
+      named: FILE.toml of a robot with plain topics, or MODULE:CLASS, which may measure anything.
+      required: Those of the domain.
+    """
+    lacking = [name for name in required if name not in PLAIN_SENSORS]
+    if named.endswith(".toml") and lacking:
+        raise UsageError(
+            f"{named}: the domain requires {', '.join(lacking)}, but plain topics carry odom and pose alone; expected "
+            "MODULE:CLASS of a Hardware"
+        )
 
 
 def _check_commands(file: str, robot: str) -> None:

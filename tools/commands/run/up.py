@@ -9,6 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from tailor.executive import domains
 from tailor.runtime.malloc_settings import set_for_host
 from tailor.runtime.stopping import stop_on_signals
 from tailor.schemas.errors import UsageError
@@ -18,7 +19,7 @@ from tailor.tools.cli.systems.bus_settings import configure_hosting, with_hostin
 from tailor.tools.cli.systems.deployment import executive_config
 from tailor.tools.cli.systems.system_flags import configure_system, deployment_from
 from tailor.tools.launch.checks.package_check import check_package
-from tailor.tools.launch.hardware import hardware_of
+from tailor.tools.launch.hardware import check_sensors, hardware_of
 from tailor.tools.launch.processes import LaunchConfig
 from tailor.tools.launch.stale_models import stale_models_warning
 from tailor.tools.launch.system import run_system
@@ -97,8 +98,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check_hardware(config: LaunchConfig) -> None:
-    """Raise UsageError if there is no such hardware, or it is another robot than the domain's."""
+    """Raise UsageError if there is no such hardware, it is another robot's, or it lacks a required sensor."""
     robot = hardware_of(config.hardware, config.bus.endpoint).robot
     expected = spec_of(config.executive.domain).robot
     if robot != expected:
         raise UsageError(f"--hardware {config.hardware}: is of the robot '{robot}', expected '{expected}'")
+    check_sensors(config.hardware, domains.load(config.executive.domain).required)

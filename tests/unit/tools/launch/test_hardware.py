@@ -4,13 +4,19 @@ import errno
 import io
 import os
 import time
+from types import SimpleNamespace
 
 import pytest
 
+from tailor.executive import domains
+from tailor.executive.composition import ExecutiveConfig
 from tailor.runtime.aside import aside
 from tailor.schemas.errors import UsageError
+from tailor.tools.cli.systems.bus_settings import BusSettings
 from tailor.tools.commands.drivers.driver import reporter
-from tailor.tools.launch.hardware import hardware_of
+from tailor.tools.commands.run.up import _check_hardware
+from tailor.tools.launch.hardware import check_sensors, hardware_of
+from tailor.tools.launch.processes import LaunchConfig
 from tests.support.patience import wait_until
 
 ELSEWHERE = '[bus]\nconnect = "tcp/192.0.2.1:7447"\n'
@@ -33,6 +39,17 @@ def test_one_that_obeys_cmd_vel_is_not_nor_one_whose_commands_nobody_knows_yet(t
     file = tmp_path / "robot.toml"
     file.write_text(f'robot = "{robot}"\n{ELSEWHERE}')
     assert hardware_of(str(file), "tcp/127.0.0.1:7447").robot == robot
+
+
+def test_a_domain_that_requires_what_plain_topics_do_not_carry_is_refused_at_once(tmp_path, monkeypatch):
+    file = tmp_path / "robot.toml"
+    file.write_text(f'robot = "agilo"\n{ELSEWHERE}')
+    config = LaunchConfig(ExecutiveConfig("soccer", "waypoints"), BusSettings(), hardware=str(file))
+    _check_hardware(config)
+    monkeypatch.setattr(domains, "load", lambda name: SimpleNamespace(required=("odom", "gyro", "pose", "tags")))
+    with pytest.raises(UsageError, match=r"requires gyro, tags, but plain topics carry odom and pose alone"):
+        _check_hardware(config)
+    check_sensors("package:Robot", ("odom", "gyro"))  # a class measures what it likes
 
 
 @pytest.mark.parametrize(
