@@ -39,6 +39,15 @@ def test_all_mismatches_are_reported_at_once():
     assert "v ranges from -0.9 to 0.9 m/s, the driver's limits are -0.5 and 0.5" in str(caught.value)
 
 
+def test_a_required_sensor_that_the_driver_does_not_list_is_named():
+    """A simulator sends it all the same; the driver of the real robot then refused each of its readings."""
+    driver = shipped_driver_spec("agilo")
+    without_pose = dataclasses.replace(driver, sensors=tuple(each for each in driver.sensors if each.topic != "pose"))
+    with pytest.raises(UsageError, match=r"match: pose is required, but no sensor of the driver$"):
+        check_driver(SOCCER, without_pose)
+    check_driver(SOCCER, dataclasses.replace(driver, sensors=()))  # lists none: a simulator's alone
+
+
 AXES = {"v": Axis("v", "m/s", -0.5, 0.5), "omega": Axis("omega", "rad/s", -1.5, 1.5)}
 
 

@@ -113,7 +113,7 @@ def mismatches_of(domain: Domain, driver: DriverSpec) -> list[str]:
         ]
     if not mismatches:
         mismatches += _misread(domain, driver)
-    return [*mismatches, *_unfit_rates(domain, driver)]
+    return [*mismatches, *_undeclared(domain, driver), *_unfit_rates(domain, driver)]
 
 
 def _misread(domain: Domain, driver: DriverSpec) -> Iterator[str]:
@@ -141,6 +141,15 @@ def _misreading(outlet: Outlet, written: tuple[float, ...], axes: tuple[str, ...
     values = ", ".join(f"{value:g}" for value in written)
     heard = ", ".join(f"{value:g}" if isinstance(value, int | float) else shown(value) for value in read) or "nothing"
     return f" carries {values} for {', '.join(axes)}, and the driver reads {heard}"
+
+
+def _undeclared(domain: Domain, driver: DriverSpec) -> Iterator[str]:
+    """Required sensors that a list of sensors lacks: a simulator sends them, a driver of hardware refuses them."""
+    declared = {sensor.topic for sensor in driver.sensors}
+    if declared:
+        yield from (
+            f"{name} is required, but no sensor of the driver" for name in domain.required if name not in declared
+        )
 
 
 def _unfit_rates(domain: Domain, driver: DriverSpec) -> Iterator[str]:

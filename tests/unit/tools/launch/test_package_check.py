@@ -210,7 +210,7 @@ def test_faults_come_in_the_order_of_the_package():
         ("rate_hz = 50", "rate = 50", "driver.toml: sensors.odom: unknown key 'rate', expected one of: rate_hz, frame"),
         ("upper = 0.9", "upper = 0.9\nkeep = 0.1", "driver.toml: v: unknown key 'keep', expected one of: name, unit"),
         ("timeout_s = 0.3", "timeout_s = 0.3\nrate = 3", "driver.toml: cmd_vel: unknown key 'rate', expected one of:"),
-        ("odom = ", "cmd_vel = ", "driver.toml: cmd_vel is the topic of a command and of a sensor, expected two"),
+        ("ball = ", "cmd_vel = ", "driver.toml: cmd_vel is the topic of a command and of a sensor, expected two"),
         ('unit = "m/s"', 'unit = "km/h"', "driver.toml: v has the unit 'km/h', expected m/s as the domain"),
         ("upper = 0.9", "upper = 0.5", "v ranges from -0.9 to 0.9 m/s"),
         (
