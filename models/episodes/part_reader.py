@@ -31,7 +31,6 @@ PER_EPISODE = {
 OPTIONAL = (WORK, IN_CONTEXT)  # older data sets lack them
 MAX_ROWS = 2_000_000  # two days at 10 Hz; a megabyte may hold billions, which memory does not
 MAX_BYTES = 2_000_000_000  # of such rows, each with some hundred bytes
-MAX_TEXT = 200  # characters of a kind of failure, which stands in every row
 
 
 def parts_of(folder: Path) -> list[Path]:
@@ -102,7 +101,7 @@ def _with_short_texts(table: pa.Table, path: Path) -> pa.Table:
     """The table with texts in each row, of which a file may hold a huge one once.
 
     Raises:
-      UsageError: A text is too long for a kind of failure.
+      UsageError: The longest text, put into each row, would exceed MAX_BYTES.
     """
     import pyarrow as pa
 
@@ -110,8 +109,9 @@ def _with_short_texts(table: pa.Table, path: Path) -> pa.Table:
     if not pa.types.is_dictionary(column.type):
         return table
     longest = max((len(text or "") for chunk in column.chunks for text in chunk.dictionary.to_pylist()), default=0)
-    if longest > MAX_TEXT:
-        raise UsageError(f"{path}: column {FAILURE} holds {longest} characters, expected at most {MAX_TEXT}")
+    if longest * len(column) > MAX_BYTES:
+        found = f"column {FAILURE} holds {longest} characters"
+        raise UsageError(f"{path}: {found}, too many for each of {len(column)} rows")
     return table.set_column(table.column_names.index(FAILURE), FAILURE, column.cast(column.type.value_type))
 
 

@@ -187,10 +187,13 @@ def test_a_part_whose_compressed_rows_no_memory_holds_is_refused_unread(folder: 
         read_data_set(folder)
 
 
-def test_a_long_text_that_a_part_holds_once_is_not_put_into_every_row(folder: Path) -> None:
+def test_a_long_text_that_a_part_holds_once_is_not_put_into_every_row(folder: Path, monkeypatch) -> None:
     """A file of 270 kB made training ask for 12 GB."""
-    change_all("failure", ["x" * 201] * 6)(folder / PART)
-    with pytest.raises(UsageError, match=r"column failure holds 201 characters, expected at most 200"):
+    change_all("failure", ["x" * 2001] * 6)(folder / PART)
+    assert read_data_set(folder).episodes[0].failure == "x" * 2001, "what an action states as it fails has up to 2000"
+    change_all("failure", ["x" * 100_000] * 6)(folder / PART)
+    monkeypatch.setattr(part_reader, "MAX_BYTES", 400_000)
+    with pytest.raises(UsageError, match=r"column failure holds 100000 characters, too many for each of 402 rows"):
         read_data_set(folder)
 
 
