@@ -23,7 +23,7 @@ _FACT = re.compile(rf"\(\s*({_NAME}(?:\s+{_NAME})*)\s*\)")
 _PLAIN = re.compile(r"(\d+(?:\.\d+)?)\s*:\s*(\(.*\))\s*(?:\[(\d+(?:\.\d+)?)\])?")
 _STEP = re.compile(r"Step\s+(\d+)\s*:\s*(\(.*\))")
 _LINK = re.compile(r"(\d+)\s*->\s*(\(.*\))")
-_PAIR = re.compile(r"(\d+)<(\d+)")
+_PAIR = re.compile(r"(?<!\d)(\d+)<(\d+)")  # from the first digit on, or a long number would take minutes
 _INTEGER = re.compile(r"-?[0-9]+")
 _DECIMAL = re.compile(r"[0-9]+(?:\.[0-9]*)?(?:e[-+]?[0-9]+)?")
 _SKIPPED = ("Time:", "Makespan:", "Parsing time:", "Memory used")
@@ -79,8 +79,8 @@ def parse_plan(text: str) -> Plan:
             _read_line(line.rstrip(), draft)
         except ValueError as error:
             raise PlanTextError(f"plan text, line {row}: {error}") from None
-    if max(len(draft.actions), len(draft.plain)) > MAX_STEPS:
-        raise PlanTextError(f"plan text: more than {MAX_STEPS} steps")
+        if max(len(draft.actions), len(draft.plain)) > MAX_STEPS:  # at once: an executive reads it within a tick
+            raise PlanTextError(f"plan text: more than {MAX_STEPS} steps")
     if draft.has_goal:
         return _from_links(draft)
     if draft.plain:
@@ -109,7 +109,7 @@ def _read_line(line: str, draft: _Draft) -> None:
     elif draft.part == "bindings":
         draft.bindings.append(line)
     elif draft.part == "orderings":
-        draft.bounds.append(tuple(_bound(word) for word in stripped.split()))
+        draft.bounds.append(tuple(map(_bound, _row(stripped, draft))))
     else:
         _read_step(stripped, draft)
 
@@ -138,6 +138,14 @@ def _enter(action: Fact, start: float, duration: str | None, draft: _Draft) -> N
     if duration is None:
         draft.instant.add(number)
     draft.plain.append(Step(number, action, start, 1.0 if duration is None else _number(duration)))
+
+
+def _row(text: str, draft: _Draft) -> list[str]:
+    """The words of one more row of the table of orderings, as many as there may be."""
+    words = text.split()
+    if max(len(words), len(draft.bounds) + 1) > 2 * MAX_STEPS + 1:
+        raise ValueError(f"a table of orderings for more than {MAX_STEPS} steps")
+    return words
 
 
 def _bound(text: str) -> int | None:

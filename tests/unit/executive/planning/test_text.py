@@ -1,5 +1,7 @@
 """Plans as text: writing and reading VHPOP's forms; bad text is rejected with its line."""
 
+import time
+
 import pytest
 
 from tailor.executive.planning import (
@@ -80,7 +82,9 @@ def test_an_empty_plan_has_a_goal_and_nothing_else():
         ("Step 1   : (a)\nStep 2   : (b)\nGoal     : \norderings = { 1<2 2<1 }\n", "cycle"),
         ("Step 1   : (a)\nGoal     : \norderings = \n  0 inf\n", "expected a 3 x 3 table"),
         ("x" * 2_000_000, "longer than"),
-        ("1:(a)\n" * 300, "more than 200 steps"),
+        ("1:(a)\n" * 201 + "then a line that nobody reads", "more than 200 steps"),
+        ("orderings 1<2\n" + "0 " * 402 + "x", "line 2: a table of orderings for more than 200 steps"),
+        ("orderings 1<2\n" + "0\n" * 402 + "x", "line 403: a table of orderings for more than 200 steps"),
         ("Step 1   : (a)\nGoal     : \norderings = \n  0\ntolerance = soon\n", "line 5: expected a time, found 'soon'"),
         ("Goal     : \norderings = \n  0\n(define x)\n", "line 4: expected a whole number, found '(define'"),
     ],
@@ -89,6 +93,20 @@ def test_bad_text_is_refused_with_its_line(text, message):
     with pytest.raises(PlanTextError) as caught:
         parse_plan(text)
     assert message in str(caught.value)
+
+
+@pytest.mark.promise("P8")
+def test_a_long_number_among_the_orderings_is_read_in_no_time():
+    """An executive reads an answer within a tick; one of 128 KiB in a single number took minutes."""
+    began_s = time.process_time()
+    with pytest.raises(PlanTextError, match="there is no plan"):
+        parse_plan("orderings " + "1" * 20_000)
+    assert time.process_time() - began_s < 1.0  # it takes milliseconds; from every digit on, seconds
+
+
+def test_orderings_are_read_as_pairs():
+    links = "Step 1 : (a)\nStep 2 : (b)\nStep 12 : (c)\nGoal :\norderings = { 1<2 2<12 }"
+    assert parse_plan(links).orderings == ((1, 2), (2, 12))
 
 
 def test_a_sequence_of_actions_is_a_plan():
