@@ -19,7 +19,10 @@ def write_whole(path: Path, content: bytes) -> None:
     """
     temporary = path.with_suffix(f".{os.getpid()}.tmp")
     try:
-        temporary.write_bytes(content)
+        with temporary.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())  # else a power cut may leave the name without the content: a part that seems done
         temporary.replace(path)
     except OSError as error:
         if temporary.exists():

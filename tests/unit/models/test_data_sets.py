@@ -349,16 +349,16 @@ def test_rounds_in_which_an_action_never_ran_are_no_copies_of_one_another(folder
         merge([read_data_set(folder), *[read_data_set(tmp_path / "2")] * 2])
 
 
-@pytest.mark.parametrize("at", ["write_bytes", "replace"])
-def test_a_full_disk_is_named_with_the_file_and_leaves_nothing_half_written(folder: Path, monkeypatch, at: str) -> None:
+@pytest.mark.parametrize(("owner", "at"), [(os, "fsync"), (Path, "replace")])
+def test_a_full_disk_is_named_with_the_file_and_leaves_nothing_half_written(
+    folder: Path, monkeypatch, owner: object, at: str
+) -> None:
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    writing = Path.write_bytes
 
-    def full(path: Path, *content: bytes) -> None:
-        writing(path, b"half")
+    def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))  # as a write says it: of no file
 
-    monkeypatch.setattr(Path, at, full)
+    monkeypatch.setattr(owner, at, full)
     episode = Episode(9, np.zeros(8), np.zeros((3, 8)), 1.0, True, "")
     for path, write in (
         (folder / "part-000009.parquet", lambda: write_part(folder / "part-000009.parquet", [episode], NAMES)),
