@@ -156,7 +156,10 @@ class BackgroundSink(Sink):
             self._thread.start()
 
     def _write(self) -> None:
+        before = self.on_disk
         try:
             super().flush()
+            # The kernel begins to write at once, not after the usual 30 s, which a power cut would lose; nobody waits.
+            os.posix_fadvise(self._file, before, self.on_disk - before, os.POSIX_FADV_DONTNEED)
         except OSError as error:
             self._error = error
