@@ -88,7 +88,8 @@ print(sys.stdin.read() == "", resource.getrlimit(resource.RLIMIT_AS), open("/pro
     _, answer, _ = run(program(tmp_path, body))
     assert answer.output.startswith("True (2147483648, 2147483648) ")
     (ignored,) = (int(line.split()[1], 16) for line in answer.output.splitlines() if line.startswith("SigIgn"))
-    assert ignored == 1 << 12 | 1 << 24, "Python's own two, not those of the process between"
+    between = sum(1 << number - 1 for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM))
+    assert not ignored & between, "what the process between ignores; others may be inherited from whoever runs this"
 
 
 def test_a_program_that_cannot_be_executed_has_its_reason(tmp_path):

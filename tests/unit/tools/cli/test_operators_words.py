@@ -88,7 +88,7 @@ def test_a_robot_without_a_driver_is_answered_with_those_that_are_heard(robots, 
 )
 def test_a_refusal_names_the_command_that_removes_its_cause(endpoint, capsys, monkeypatch, refusal, advice):
     before = DriverState(0, "disarmed", "just started", "", 1, "", 0)
-    exchange = SimpleNamespace(state=before, told=before, refusal=refusal.value)
+    exchange = SimpleNamespace(state=before, reported=before, refusal=refusal.value)
     monkeypatch.setattr(arm, "_exchange", lambda *_: (arming_exchange.Outcome.REFUSED, exchange))
     assert main(["arm", "agilo", "--sender", "a" * 32, "--connect", endpoint]) == 1
     assert capsys.readouterr().out == f"refused: {refusal}; agilo is disarmed: just started{advice}\n"
