@@ -79,7 +79,7 @@ def read_part(path: Path, names: Sequence[str]) -> pa.Table:
         columns = list(dict.fromkeys(wanted))  # of others nothing is read
         table = pq.read_table(path, columns=columns, read_dictionary=[FAILURE], page_checksum_verification=True)
         table.validate(full=True)  # text that is not UTF-8, say
-        table = _with_short_texts(table, path)
+        table = _with_text_in_rows(table, path)
     except (pa.ArrowException, OSError) as error:
         first = str(error).partition("\n")[0]  # others list the columns
         raise UsageError(f"{path}: cannot be read ({first}), expected a part of a data set") from None
@@ -97,7 +97,7 @@ def _check_extent(metadata: pq.FileMetaData, path: Path) -> None:
         raise UsageError(f"{path}: holds {size} bytes, expected at most {MAX_BYTES} in a part of a data set")
 
 
-def _with_short_texts(table: pa.Table, path: Path) -> pa.Table:
+def _with_text_in_rows(table: pa.Table, path: Path) -> pa.Table:
     """The table with texts in each row, of which a file may hold a huge one once.
 
     Raises:

@@ -25,7 +25,7 @@ _PARENT_DEATH_SIGNAL = str(Path(__file__).with_name("parent_death_signal.py"))
 
 def _bound_to_parent(argv: Sequence[str]) -> list[str]:
     """Command that runs `argv`, which receives SIGTERM when this process dies."""
-    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), str(int(signal.SIGTERM)), *argv]
+    return [sys.executable, "-I", "-S", _PARENT_DEATH_SIGNAL, str(os.getpid()), *argv]
 
 
 class Child:

@@ -1,6 +1,6 @@
-"""Script that requests a signal at the death of its parent, heeds those that end a process, and executes a program.
+"""Script that requests SIGTERM at the death of its parent, heeds those that end a process, and executes a program.
 
-Usage: `python parent_death_signal.py PARENT_PID SIGNAL PROGRAM ARGUMENTS…`. The kernel sends the signal even after
+Usage: `python parent_death_signal.py PARENT_PID PROGRAM ARGUMENTS…`. The kernel sends the signal even after
 kill -9 of the parent. It is a script of its own, because only exec is safe between fork and exec in a process with
 threads.
 
@@ -28,8 +28,8 @@ def heed_ends() -> None:
 
 def main() -> None:
     """Set the signals and exec; end silently if the parent has died meanwhile."""
-    parent, number, program = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
-    request_at_parents_death(number)
+    parent, program = int(sys.argv[1]), sys.argv[2:]
+    request_at_parents_death(SIGTERM)
     heed_ends()
     if os.getppid() == parent:
         os.execvp(program[0], program)

@@ -11,12 +11,12 @@ from pathlib import Path
 ROUNDS, PAUSE_S = 50, 0.01  # a process that is being killed may just have started another
 
 
-def end_session(leader: int, rounds: int = ROUNDS) -> None:
+def end_session(leader: int) -> None:
     """Kill what is left of the session of a process that called setsid; takes milliseconds for hundreds of processes.
 
     A process that has begun a session of its own is not found.
     """
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         left = members(leader)
         if not left:
             return

@@ -47,8 +47,8 @@ def check_sensors(named: str, required: Iterable[str]) -> None:
     lacking = [name for name in required if name not in PLAIN_SENSORS]
     if named.endswith(".toml") and lacking:
         raise UsageError(
-            f"{named}: the domain requires {', '.join(lacking)}, but plain topics carry odom and pose alone; expected "
-            "MODULE:CLASS of a Hardware"
+            f"{named}: the domain requires {', '.join(lacking)}, but plain topics carry "
+            f"{' and '.join(PLAIN_SENSORS)} alone; expected MODULE:CLASS of a Hardware"
         )
 
 
@@ -75,7 +75,7 @@ def _check_bus(file: str, settings: PlainSettings, endpoint: str) -> None:
         raise UsageError(f"{file}: {error}") from error
     if settings.bus.connect not in ("", endpoint):
         return
-    ours = {f"{settings.robot}/{name}" for name in ("cmd_vel", "odom", "pose")}
+    ours = {f"{settings.robot}/{name}" for name in ("cmd_vel", *PLAIN_SENSORS)}
     names = {name.strip("/") for name in (settings.topics.cmd_vel, settings.topics.odom, settings.topics.pose)}
     both = sorted(ours & names)
     if both and settings.bus.profile == "plain":
